@@ -540,7 +540,7 @@ TYPED_TEST(SleepIn, WhatIsInEquilibriumAndHeldIsSetAtRestWithItsForces) {
     const auto islands = sleep.candidates(state);
     ASSERT_EQ(islands.size(), 1u);
     islands[0].residual = residual;
-    EXPECT_TRUE(sleep.settle(state));
+    EXPECT_TRUE(sleep.put_to_sleep(state));
     EXPECT_TRUE(state.frozen[0]);
     double bears = 0;
     for (const Contact<D>& contact : state.contacts) bears += contact.force[1];
@@ -557,7 +557,7 @@ TYPED_TEST(SleepIn, ExactForcesAreLookedForLessAndLessOften) {
     State<D> state = world.state;
     state.quiet[0] = waits * kWait;
     sleep.candidates(state)[0].residual = kG;
-    EXPECT_EQ(sleep.settle(state), waits != 1.5 && waits != 3) << waits;
+    EXPECT_EQ(sleep.put_to_sleep(state), waits != 1.5 && waits != 3) << waits;
   }
 }
 
@@ -571,7 +571,7 @@ TYPED_TEST(SleepIn, WhatItsContactsDoNotHoldGoesOn) {
     for (Contact<D>& contact : state.contacts) contact.force = at<D>(0, kG / (D == 2 ? 2 : 4));
     Sleep<D> sleep(world.model, Sleep<D>::Forces::iterated);
     sleep.candidates(state)[0].residual = 0;
-    EXPECT_EQ(sleep.settle(state), mu > 0) << mu;
+    EXPECT_EQ(sleep.put_to_sleep(state), mu > 0) << mu;
     EXPECT_EQ(state.v[0][0], mu > 0 ? 0 : 1e-3) << mu;
   }
 }
@@ -589,8 +589,8 @@ TYPED_TEST(SleepIn, ARowOfAJointHoldsToo) {
     islands[0].residual = 0;
     Row<D> row;
     row.a = 0, row.along = at<D>(1, 0);
-    if (held) sleep.hold(islands[0], row, std::numeric_limits<double>::infinity());
-    EXPECT_EQ(sleep.settle(state), held);
+    if (held) sleep.add_joint_row(islands[0], row, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(sleep.put_to_sleep(state), held);
   }
 }
 

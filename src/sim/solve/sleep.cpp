@@ -311,7 +311,7 @@ bool Sleep<D>::due_at_doubled_waits(double quiet) const {
 }
 
 template <int D>
-bool Sleep<D>::settle(State<D>& state) {
+bool Sleep<D>::put_to_sleep(State<D>& state) {
   std::stable_sort(rows_.begin(), rows_.end(),
                    [](const JointRow& p, const JointRow& q) { return p.island < q.island; });
   const double allowed = (exact_ ? kExact : kBalanced) * g_;

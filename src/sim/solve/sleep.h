@@ -19,9 +19,9 @@ namespace obscura::sim {
 /// State::contacts, and the forces under which a candidate would stay at rest.
 ///
 ///     at the start of a step     wake(), then at_start() in the first
-///     at its end                 time() of each body that moves
+///     at its end                 advance_timer() of each body that moves
 ///     where it is due()          candidates(): islands that have been quiet; the solver finds their forces
-///                                settle(): which of them stay at rest
+///                                put_to_sleep(): which of them stay at rest
 ///
 /// All that is carried from step to step is in the state: frozen, quiet, contacts.
 template <int D>
@@ -53,7 +53,7 @@ class Sleep {
   bool due(const State<D>& state) const { return state.step % every_ == 0; }
 
   /// Counts how long a body has been quiet, after a step of h (s): its speed and angular speed, squared.
-  void time(State<D>& state, int body, double v2, double w2, double h) const {
+  void advance_timer(State<D>& state, int body, double v2, double w2, double h) const {
     const double radius = bounding_radius_[body];
     state.quiet[body] = v2 + w2 * (radius * radius) <= still2_ ? state.quiet[body] + h : 0;
   }
@@ -99,21 +99,21 @@ class Sleep {
 
   /// The islands that may be put to sleep: no point of theirs has been faster than the solver's limit for
   /// kWait. The solver then finds forces for each, writes them into state.contacts and the remaining
-  /// acceleration into `residual`, and shows the bearing joints by hold().
+  /// acceleration into `residual`, and shows the bearing joints by add_joint_row().
   std::span<Island> candidates(const State<D>& state);
 
   /// Stops the bodies of an island.
   void halt(State<D>& state, const Island& island) const;
 
   /// A row of a joint of a candidate; `spare` as in Mobility::add_row.
-  void hold(const Island& island, const Row<D>& row, double spare) {
+  void add_joint_row(const Island& island, const Row<D>& row, double spare) {
     rows_.push_back({int(&island - candidates_.data()), spare, row});
   }
 
   /// Puts to sleep those candidates that are in equilibrium and whose motion is held. If the solver's forces
   /// are not enough, those of a few contacts are found exactly and written into the state. True if any fell
   /// asleep.
-  bool settle(State<D>& state);
+  bool put_to_sleep(State<D>& state);
 
  private:
   struct JointRow {

@@ -44,14 +44,14 @@ Stepper<D>::Stepper(const Model<D>& model)
     : model_(model),
       paths_(sim::paths(model)),
       edges_(edges(model)),
-      presses_(model.mice.size()),
-      releases_(model.mice.size()),
+      press_times_(model.mice.size()),
+      release_times_(model.mice.size()),
       integrate_(sim::integrate(model.integrator)),
       handout_(model, paths_),
       blasts_(model),
       drives_(model),
       divergence_(model, paths_),
-      tied_(model, paths_),
+      dynamics_(model, paths_),
       work_(model),
       forces_(model),
       forced_flight_(model, forces_.flying()),
@@ -64,8 +64,8 @@ Stepper<D>::Stepper(const Model<D>& model)
   assert(std::is_partitioned(model.bodies.begin(), model.bodies.end(),
                              [](const auto& b) { return !b.turns(); }));
   for (const ScriptEvent& edge : edges_) {
-    if (edge.kind == ScriptEvent::Kind::press) presses_[edge.mouse] = edge.at;
-    if (edge.kind == ScriptEvent::Kind::release) releases_[edge.mouse] = edge.at;
+    if (edge.kind == ScriptEvent::Kind::press) press_times_[edge.mouse] = edge.at;
+    if (edge.kind == ScriptEvent::Kind::release) release_times_[edge.mouse] = edge.at;
   }
   for (int i = 0; i < kBlock; ++i) {
     for (int axis = 0; axis < D; ++axis) gravity_.push_back(model.gravity[axis]);
@@ -81,7 +81,7 @@ Stepper<D>::Stepper(const Model<D>& model)
       spin_limits_.back() = std::min(spin_limits_.back(), kFarthestTurn * value(model.rate));
   }
   if (!drag) drag_.clear();
-  tied_.leave_flying();
+  dynamics_.leave_flying();
   for (int body = 0; body < int(model.bodies.size()); ++body) {
     if (model.bodies[body].handout) by_handout_.push_back(body);
   }
@@ -94,13 +94,13 @@ Stepper<D>::Stepper(const Model<D>& model)
     events_ = std::make_unique<Events<D>>(model);
     return;
   }
-  if (!model.bonds.empty()) pieces_ = std::make_unique<BondedBodies<D>>(model, paths_);
+  if (!model.bonds.empty()) bonded_ = std::make_unique<BondedBodies<D>>(model, paths_);
   const auto let_go = [](const Drive<D>& drive) { return drive.release.has_value(); };
   if (std::any_of(model.drives.begin(), model.drives.end(), let_go)) {
     lets_go_ = std::make_unique<Releases<D>>(model);
     return;
   }
-  if (model.collision != Collision::handout && !pieces_)
+  if (model.collision != Collision::handout && !bonded_)
     contact_ = std::make_unique<ContactStep<D>>(model, paths_);
   suspects_.reserve(model.bodies.size());
   watch_every_ = std::max<std::int64_t>(1, std::llround(value(model.rate) / 60));
@@ -125,7 +125,7 @@ void Stepper<D>::begin(State<D>& state) {
     // the first step tells of it
   }
   state.released.resize(model_.drives.size());
-  if (pieces_) return pieces_->begin(state);
+  if (bonded_) return bonded_->begin(state);
   state.grips.resize(model_.mice.size());
   state.blasts.resize(model_.explosions.size());
   state.work.resize(model_.books_work() ? 1 : 0);
@@ -143,7 +143,7 @@ void Stepper<D>::begin(State<D>& state) {
 
 template <int D>
 bool Stepper<D>::fits(const State<D>& state) {
-  return sim::fits(state, model_) && (events_ || sound(state)) && (!pieces_ || pieces_->fits(state)) &&
+  return sim::fits(state, model_) && (events_ || sound(state)) && (!bonded_ || bonded_->fits(state)) &&
          (!events_ || events_->fits(state));
 }
 
@@ -177,14 +177,14 @@ std::optional<Trouble> Stepper<D>::step(State<D>& state) {
 // goes on within a step; with bonds only from its beginning
 template <int D>
 std::optional<Trouble> Stepper<D>::go(State<D>& state, double from, double to) {
-  if (pieces_) return to < 1 ? pieces_->partial_step(state, to) : pieces_->step(state);
+  if (bonded_) return to < 1 ? bonded_->partial_step(state, to) : bonded_->step(state);
   if (lets_go_) return lets_go_->advance(state, from, to);
   return advance(state, from, to);
 }
 
 template <int D>
 std::optional<Trouble> Stepper<D>::after_step(const State<D>& state) {
-  if (pieces_) return {};
+  if (bonded_) return {};
   return lets_go_ ? lets_go_->check_energy(state) : check_energy(state);
 }
 
@@ -203,7 +203,7 @@ bool Stepper<D>::may_gain(const State<D>& state) const {
 
 template <int D>
 std::optional<Trouble> Stepper<D>::diverges(const State<D>& state) const {
-  if (pieces_ || lets_go_ || events_ || !may_gain(state)) return {};
+  if (bonded_ || lets_go_ || events_ || !may_gain(state)) return {};
   return divergence_.check_energy(state, time({state.step, 0}, model_.rate));
 }
 
@@ -232,7 +232,7 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
     const double to = cut ? edge->at.fraction : fraction;
     const double begun = time({state.step, from}, model_.rate), ended = time({state.step, to}, model_.rate);
     if (!contact_) plan(state);
-    books_by_stage_ = !contact_ && tied_.size() == 0;
+    books_by_stage_ = !contact_ && dynamics_.size() == 0;
     if (!books_by_stage_) work_.open(state);
     if (contact_) {
       contact_->step(state, begun, (to - from) * h);
@@ -287,7 +287,7 @@ void Stepper<D>::touch_script(State<D>& state, TimeStamp at) {
 
 template <int D>
 bool Stepper<D>::pressed(int mouse, TimeStamp at) const {
-  return !(at < presses_[mouse]) && at < releases_[mouse];
+  return !(at < press_times_[mouse]) && at < release_times_[mouse];
 }
 
 // which bodies move freely and which are coupled by forces, anew whenever a mouse takes or lets go
@@ -299,10 +299,10 @@ void Stepper<D>::plan(const State<D>& state) {
   gripped_.clear();
   for (const Grip<D>& grip : state.grips) gripped_.push_back(grip.body);
   planned_ = true, blasting_ = blasting(state);
-  tied_.gather(state);
+  dynamics_.gather(state);
 
   const int bodies = int(model_.bodies.size()), still = bodies - int(state.turn.size());
-  const auto free = [&](int body) { return !model_.bodies[body].fixed && !tied_.has(body); };
+  const auto free = [&](int body) { return !model_.bodies[body].fixed && !dynamics_.has(body); };
   const auto cut = [&](int from, std::vector<Block>& blocks) {
     blocks.clear();
     for (int body = from; body < bodies;) {
@@ -319,7 +319,7 @@ void Stepper<D>::plan(const State<D>& state) {
   cut(still, spinning_);
   for (Block& block : spinning_) block.first -= still;
 
-  stages_.reserve(std::max<std::size_t>(std::size_t(tied_.size()), d_.size()));
+  stages_.reserve(std::max<std::size_t>(std::size_t(dynamics_.size()), d_.size()));
 }
 
 // false where a number ran away
@@ -411,8 +411,8 @@ void Stepper<D>::spin(State<D>& state, int k, int pieces, double t, double h) {
 
 template <int D>
 bool Stepper<D>::tied(State<D>& state, double t, double h) {
-  tied_.step(integrate_, state, t, h, stages_);
-  if (!state.work.empty()) state.work[0] += tied_.work();
+  dynamics_.step(integrate_, state, t, h, stages_);
+  if (!state.work.empty()) state.work[0] += dynamics_.work();
   const double limit = kFarthest * model_.scale;
   std::int64_t sound = 0;
   const auto look = [&](int body) {
@@ -422,11 +422,11 @@ bool Stepper<D>::tied(State<D>& state, double t, double h) {
       sound |= within(state.spin[k].data(), kAngular<D>, spin_limits_[k]);
     }
   };
-  for (const int body : tied_.bodies()) {
+  for (const int body : dynamics_.bodies()) {
     look(body);
     handout_.look(state, body, 1, suspects_);
   }
-  for (const int body : tied_.chains().links()) look(body);  // which touch nothing by the handout
+  for (const int body : dynamics_.chains().links()) look(body);  // which touch nothing by the handout
   return sound >= 0;
 }
 

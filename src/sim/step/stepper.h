@@ -92,17 +92,17 @@ class Stepper {
   const Model<D>& model_;
   std::vector<Path<D>> paths_;
   std::vector<ScriptEvent> edges_;
-  std::vector<TimeStamp> presses_, releases_;  // one a mouse
+  std::vector<TimeStamp> press_times_, release_times_;  // one a mouse
   Integrate* integrate_;
   Handout<D> handout_;
   Blasts<D> blasts_;
   std::unique_ptr<ContactStep<D>> contact_;  // of `contact` and `event`
-  std::unique_ptr<BondedBodies<D>> pieces_;  // of a model with bonds: all is done there
+  std::unique_ptr<BondedBodies<D>> bonded_;  // of a model with bonds: all is done there
   std::unique_ptr<Releases<D>> lets_go_;     // of one that lets bodies go: likewise
   std::unique_ptr<Events<D>> events_;        // of one with conditions: likewise
   Drives<D> drives_;
   DivergenceMonitor<D> divergence_;
-  ForwardDynamics<D> tied_;
+  ForwardDynamics<D> dynamics_;
   WorkBooks<D> work_;
   Forces<D> forces_;  // on bodies that fly
   ForcedFlight<D> forced_flight_;

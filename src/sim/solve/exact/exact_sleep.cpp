@@ -42,7 +42,7 @@ void ExactSolver<D>::put_to_sleep(State<D>& state, double t, double h) {
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
     if (!response_.moves(i)) continue;
     const int k = turning(state, i);
-    sleep_.time(state, i, state.v[i].squaredNorm(), k < 0 ? 0 : state.spin[k].squaredNorm(), h);
+    sleep_.advance_timer(state, i, state.v[i].squaredNorm(), k < 0 ? 0 : state.spin[k].squaredNorm(), h);
   }
   const std::span<typename Sleep<D>::Island> islands = sleep_.candidates(state);
   if (islands.empty()) return;
@@ -55,7 +55,7 @@ void ExactSolver<D>::put_to_sleep(State<D>& state, double t, double h) {
     for (const int body : island.bodies)
       island.residual = std::max(island.residual, scratch_.accelerations[body]);
   }
-  if (sleep_.settle(state)) record_forces();
+  if (sleep_.put_to_sleep(state)) record_forces();
 }
 
 // the acceleration that bodies would have from here, m/s^2 of the fastest point; infinite if no forces are

@@ -99,7 +99,7 @@ void Iterative<D>::advance(StepPart<D> part) {
   for (int i = 0; i < int(model_.bodies.size()); ++i) {
     if (!moves(i)) continue;
     const MovingBody<D>& m = moving_[std::size_t(i)];
-    sleep_.time(part.state, i, velocity(m).squaredNorm(), spin(m).squaredNorm(), part.h);
+    sleep_.advance_timer(part.state, i, velocity(m).squaredNorm(), spin(m).squaredNorm(), part.h);
   }
 }
 
@@ -117,7 +117,7 @@ void Iterative<D>::sleep(StepPart<D> step) {
   const std::span<typename Sleep<D>::Island> islands = sleep_.candidates(step.state);
   if (islands.empty()) return;
   find_equilibrium(islands, step.state, step.h / substeps_);
-  if (sleep_.settle(step.state)) stop_sleeping(step.state);
+  if (sleep_.put_to_sleep(step.state)) stop_sleeping(step.state);
 }
 
 // which watched pairs bear or are struck in a substep

@@ -38,8 +38,8 @@ void Equilibrium::find(std::span<Sleep<2>::Island> islands, Sleep<2>& sleep, Sta
     gather(island, state, step);
     island.residual = iterate(island, state, step, h) / h;
     for (const int component : components_) {
-      step.joints.each_bearing(component,
-                               [&](const Row<2>& row, double gain) { sleep.hold(island, row, gain / h); });
+      step.joints.each_bearing(
+          component, [&](const Row<2>& row, double gain) { sleep.add_joint_row(island, row, gain / h); });
     }
   }
 }

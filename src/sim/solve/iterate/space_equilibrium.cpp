@@ -105,8 +105,8 @@ void SpaceIterative::find_equilibrium(std::span<Sleep<D>::Island> islands, State
     for (const int body : island.bodies) fastest = std::max(fastest, swiftness(body));
     island.residual = fastest / h;
     for (const int component : joints_.components_of(island.bodies))
-      joints_.each_bearing(component,
-                           [&](const Row<D>& row, double gain) { sleep_.hold(island, row, gain / h); });
+      joints_.each_bearing(
+          component, [&](const Row<D>& row, double gain) { sleep_.add_joint_row(island, row, gain / h); });
   }
   if (!components_.empty()) joints_.keep(state, h, &on_joints_);
   moving_.swap(kept_);
