@@ -16,7 +16,7 @@
 #include "scene/overlap.h"
 #include "scene/path.h"
 #include "scene/solid.h"
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::scene {

@@ -7,7 +7,7 @@
 
 #include "scene/fields.h"
 #include "sim/collide/narrow_phase.h"
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::scene {

@@ -15,7 +15,7 @@
 #include "sim/constraint/joints/gear.h"
 #include "sim/constraint/joints/pulley.h"
 #include "sim/math/orientation.h"
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 
 namespace obscura::scene {
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <numbers>
 
+#include "sim/model/body_motion.h"
 #include "sim/model/drives.h"
-#include "sim/model/stance.h"
 #include "sim/model/trouble.h"
 
 namespace obscura::scene {

@@ -13,7 +13,7 @@
 #include "sim/collide/may_touch.h"
 #include "sim/collide/narrow_phase.h"
 #include "sim/collide/rails.h"
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 #include "sim/shape/convex_polygon.h"
 #include "sim/shape/shape.h"
 

@@ -6,7 +6,7 @@
 
 #include "draw/space/camera.h"
 #include "scene/fields.h"
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::scene {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "scene/path.h"
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 
 namespace obscura::scene {
 

@@ -15,7 +15,7 @@
 #include "sim/collide/rails.h"
 #include "sim/constraint/joints/wire.h"
 #include "sim/constraint/material.h"
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 #include "sim/shape/curve.h"
 
 namespace obscura::scene {

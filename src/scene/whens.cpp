@@ -7,8 +7,8 @@
 #include <array>
 
 #include "scene/path.h"
+#include "sim/model/body_motion.h"
 #include "sim/model/condition.h"
-#include "sim/model/stance.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::scene {

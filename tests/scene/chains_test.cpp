@@ -8,7 +8,7 @@
 
 #include "scene/error.h"
 #include "scene/scene.h"
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 #include "sim/multibody/chain.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/step/stepper.h"

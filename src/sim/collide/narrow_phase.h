@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "sim/model/body_motion.h"
 #include "sim/model/contact.h"
-#include "sim/model/stance.h"
 #include "sim/shape/curve.h"
 #include "sim/shape/shape.h"
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "sim/model/body_motion.h"
 #include "sim/model/path.h"
-#include "sim/model/stance.h"
 #include "sim/model/state.h"
 #include "sim/model/trouble.h"
 

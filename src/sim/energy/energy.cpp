@@ -4,7 +4,7 @@
 #include "sim/force/forces.h"
 #include "sim/force/spring.h"
 #include "sim/math/lie_step.h"
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 
 namespace obscura::sim {
 

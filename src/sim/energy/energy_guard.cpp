@@ -12,7 +12,7 @@
 #include <cmath>
 
 #include "sim/energy/energy.h"
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 
 namespace obscura::sim {
 

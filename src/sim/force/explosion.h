@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sim/math/spatial.h"
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::sim {

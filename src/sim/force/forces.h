@@ -6,8 +6,8 @@
 
 #include "sim/force/flying_forces.h"
 #include "sim/math/spatial.h"
+#include "sim/model/body_motion.h"
 #include "sim/model/drives.h"
-#include "sim/model/stance.h"
 #include "sim/model/trouble.h"
 
 namespace obscura::sim {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::sim {

@@ -6,8 +6,8 @@
 
 #include "sim/force/forces.h"
 #include "sim/math/lcp.h"
+#include "sim/model/body_motion.h"
 #include "sim/model/path.h"
-#include "sim/model/stance.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::sim {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "sim/math/lie_step.h"
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 #include "sim/model/state.h"
 
 namespace obscura::sim {

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 #include "sim/model/trouble.h"
 
 namespace obscura::sim {

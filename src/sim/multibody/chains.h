@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 #include "sim/multibody/articulated_body.h"
 
 namespace obscura::sim {

@@ -16,7 +16,7 @@
 #include "sim/constraint/material.h"
 #include "sim/force/explosion.h"
 #include "sim/force/force_coupling.h"
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::sim {

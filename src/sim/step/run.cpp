@@ -7,8 +7,8 @@
 #include <string>
 #include <type_traits>
 
+#include "sim/model/body_motion.h"
 #include "sim/model/incomplete.h"
-#include "sim/model/stance.h"
 #include "sim/step/archive.h"
 #include "sim/step/snapshots.h"
 

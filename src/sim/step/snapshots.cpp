@@ -12,7 +12,7 @@
 #include "sim/force/explosion.h"
 #include "sim/force/forces.h"
 #include "sim/force/spring.h"
-#include "sim/model/stance.h"
+#include "sim/model/body_motion.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::sim {
