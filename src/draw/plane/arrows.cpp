@@ -14,6 +14,7 @@ constexpr double kHalo = 2.4;
 constexpr double kWhole = 1.5;  // heads long: from here on the head is full
 constexpr double kEdge = 8;     // page units from a window's edge to a head
 constexpr double kSmall = 40;   // radius: a halo would bite a good part out of a smaller disc
+constexpr int kHalos = 1000;    // after the layers
 
 /// The head, larger by `halo` all around.
 std::vector<Point> head(const Arrow& arrow, double weight, double halo) {
@@ -100,10 +101,16 @@ void draw_arrows(const std::vector<Arrow>& arrows, const std::vector<Color>& ink
       return (a.tip - along * u - disc.center).norm() < disc.radius + kHalo * weight;
     });
   };
+  // halos come and go: as a layer of their own, so that in the next picture none is taken for an arrow
+  const Subject own = list.abouts.empty() ? Subject{} : list.abouts.back().subject;
+  Subject halos = own;
+  halos.index += kHalos;
+  list.of(halos);
   for (const Arrow& a : arrows)
     if (a.bare > 0) shaft(a, kHalo * weight * a.grow, room);
   for (const Arrow& a : arrows)
     if (a.bare > 1 && beside(a)) hang(a), list.add(head(a, weight, kHalo * weight * a.grow), room);
+  list.of(own);
   for (std::size_t i = 0; i < arrows.size(); ++i) shaft(arrows[i], 0, inks[i]);
   for (std::size_t i = 0; i < arrows.size(); ++i)
     hang(arrows[i]), list.add(head(arrows[i], weight, 0), inks[i]);
