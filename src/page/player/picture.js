@@ -63,7 +63,10 @@ export class Picture {
     /** @type {View | Orbit} */
     this.view = new View();
     if (film.spaces) {
-      const card = Card.made(),
+      // one for all runs, made when a whole picture is first drawn: programs take their time
+      /** @type {Card | null | undefined} */
+      let made;
+      const card = () => (made === undefined ? (made = Card.made()) : made),
         { ground } = film.spaces[0],
         view = (this.view = new Orbit(ground ? ground.normal : [0, 1, 0], Boolean(ground)));
       this.spaces = film.spaces.map((/** @type {any} */ _, /** @type {number} */ run) => new Space(film, run, reel, card, view));

@@ -162,7 +162,8 @@ class Player {
     canvas.style.width = `${width}px`;
     canvas.style.height = `${height}px`;
     this.picture.size(Math.round(width * pixel), Math.round(height * pixel));
-    this.draw();
+    // the first picture of space is there at once
+    this.draw(this.picture.spaces.length > 0 && this.costs[1] === 0);
     this.draw_ticks();
   }
 

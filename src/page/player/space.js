@@ -40,7 +40,7 @@ export class Space {
    * @param {any} film
    * @param {number} run which of the film's
    * @param {import("./reel.js").Reel} reel
-   * @param {import("./card.js").Card | null} card none: this browser has no WebGL
+   * @param {() => import("./card.js").Card | null} card none: this browser has no WebGL
    * @param {import("./lens.js").Orbit} view
    */
   constructor(film, run, reel, card, view) {
@@ -55,7 +55,18 @@ export class Space {
     this.bodies = this.space.colors.length;
     /** Of each body its place and, from the fifth number on, how it is turned. */
     this.poses = new Float32Array(8 * this.bodies);
-    this.lit = card && new Lit(this, card);
+    this.card = card;
+    /** @type {Lit | null | undefined} */
+    this.light = undefined;
+  }
+
+  /** Who draws it in light, if this browser can. */
+  get lit() {
+    if (this.light === undefined) {
+      const card = this.card();
+      this.light = card && new Lit(this, card);
+    }
+    return this.light;
   }
 
   /** Where bodies are in a frame. */
@@ -138,14 +149,14 @@ export class Space {
    */
   draw(context, frame, sketched) {
     const scale = context.canvas.height / 1080,
-      { space, lit } = this;
+      { space } = this,
+      lit = sketched ? null : this.lit;
     this.pose(frame);
-    const lenses = this.lenses(frame),
-      plain = sketched || !lit;
-    if (!plain) lit.begin(context.canvas);
+    const lenses = this.lenses(frame);
+    lit?.begin(context.canvas);
     lenses.forEach((lens, i) => {
       const fitted = Lens.of(space.panels[i], this.reel.numbers, 0).scale;
-      if (plain) {
+      if (!lit) {
         this.ground.sketch(context, lens, i, scale, fitted);
         new Sketch(this, context, lens).draw(frame, scale, i);
       } else {
@@ -153,7 +164,7 @@ export class Space {
         lit.panel(lens, frame, scale, i);
       }
     });
-    if (!plain) lit.end(context, lenses, scale);
+    lit?.end(context, lenses, scale);
     for (const lens of lenses) this.ground.room(context, lens, scale, false);
   }
 
