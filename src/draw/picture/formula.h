@@ -62,7 +62,7 @@ struct Hold {
 void add(const Formula& formula, const Point& at, List& list, const Hold& hold = {});
 
 /// `text` with its first letter a vector, unless it says itself what is one, or begins with a word or with a
-/// product: in "m g" nobody knows which is one.
+/// product: of "m g" neither letter is known to be one.
 std::string as_vector(const std::string& text);
 
 /// `text` as it is where it is mathematics; plain words, such as a body is called by, upright.

@@ -25,6 +25,16 @@ export function window_of(lens, scale) {
   return [left, top, Math.ceil((x + width) * scale - 1e-6) - left, Math.ceil((y + height) * scale - 1e-6) - top];
 }
 
+/** From here on in page units, within a panel; until restore(). */
+export function clip_to_panel(c, lens, scale) {
+  c.save();
+  c.setTransform(1, 0, 0, 1, 0, 0);
+  c.beginPath();
+  c.rect(...window_of(lens, scale));
+  c.clip();
+  c.setTransform(scale, 0, 0, scale, 0, 0);
+}
+
 /** Whether one sees the ground from above. */
 export function above_ground(ground, lens) {
   if (!ground) return false;
@@ -47,7 +57,7 @@ export class Ground {
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.drawImage(this.kept(context.canvas, lens, i, scale, fitted), 0, 0);
     if (!above_ground(this.space.ground, lens)) return;
-    this.clipped(context, lens, scale);
+    clip_to_panel(context, lens, scale);
     draw_contacts(context, this.space, lens, body_of, this.dark);
     context.restore();
   }
@@ -96,16 +106,6 @@ export class Ground {
     return c;
   }
 
-  /** Page units within a panel. */
-  clipped(c, lens, scale) {
-    c.save();
-    c.setTransform(1, 0, 0, 1, 0, 0);
-    c.beginPath();
-    c.rect(...window_of(lens, scale));
-    c.clip();
-    c.setTransform(scale, 0, 0, scale, 0, 0);
-  }
-
   /** A pool of light around what is looked at, on the dark theme. */
   pool(c, lens, scale) {
     const { normal, point } = this.space.ground,
@@ -128,7 +128,7 @@ export class Ground {
     small.width = columns;
     small.height = rows;
     /** @type {CanvasRenderingContext2D} */ (small.getContext("2d")).putImageData(image, 0, 0);
-    this.clipped(c, lens, scale);
+    clip_to_panel(c, lens, scale);
     c.drawImage(small, left - step / 2, top, columns * step, rows * POOL_ROW);
     c.restore();
   }
@@ -153,7 +153,7 @@ export class Ground {
     const radius = loop.length ? Math.max(...loop.map((p) => Math.hypot(...sub(p, foot)))) : TO * shown;
     const last = Math.min(Math.ceil(radius / tile), 400),
       ink = this.dark ? [0x50, 0x5d, 0x6a] : [0xc6, 0xcb, 0xd1];
-    this.clipped(c, lens, scale);
+    clip_to_panel(c, lens, scale);
     c.lineWidth = GRID * weight;
     c.lineCap = "butt";
     for (const [along, across, here, there] of /** @type {[number[], number[], number, number][]} */ ([
@@ -198,7 +198,7 @@ export class Ground {
   room(c, lens, scale, back) {
     const { room, weight, hatch } = this.space;
     if (!room) return;
-    this.clipped(c, lens, scale);
+    clip_to_panel(c, lens, scale);
     c.lineCap = "round";
     c.lineWidth = (back ? 1 : 0.8) * FRAME * weight;
     c.strokeStyle = `rgba(${hatch.slice(0, 3).join(",")},${back ? hatch[3] / 255 : 70 / 255})`;

@@ -2,24 +2,35 @@
 
 import { dot, plus, sub } from "./lens.js";
 
-/** How far along a ray it meets a polyhedron. */
-export function meets_flat(shape, from, way) {
+/**
+ * Between which lengths a ray is inside of planes {x: n x = d}; the first is not less than the second where it misses.
+ * @param {{n: number[], d: number}[]} planes
+ * @returns {[number, number]}
+ */
+export function inside_planes(planes, from, way) {
   let enters = -Infinity,
     leaves = Infinity;
-  for (let f = 0; f < shape.faces.length; ++f) {
-    const n = shape.normals.slice(3 * f, 3 * f + 3),
-      v = shape.faces[f][0],
-      p = shape.vertices.slice(3 * v, 3 * v + 3);
-    const high = dot(n, sub(from, p)),
+  for (const { n, d } of planes) {
+    const high = dot(n, from) - d,
       rise = dot(n, way);
     if (Math.abs(rise) < 1e-12) {
-      if (high > 0) return Infinity;
+      if (high > 0) return [Infinity, -Infinity];
     } else if (rise < 0) {
       enters = Math.max(enters, -high / rise);
     } else {
       leaves = Math.min(leaves, -high / rise);
     }
   }
+  return [enters, leaves];
+}
+
+/** How far along a ray it meets a polyhedron. */
+export function meets_flat(shape, from, way) {
+  const planes = shape.faces.map((/** @type {number[]} */ face, /** @type {number} */ f) => {
+    const n = shape.normals.slice(3 * f, 3 * f + 3);
+    return { n, d: dot(n, shape.vertices.slice(3 * face[0], 3 * face[0] + 3)) };
+  });
+  const [enters, leaves] = inside_planes(planes, from, way);
   return enters < leaves ? enters : Infinity;
 }
 

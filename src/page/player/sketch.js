@@ -4,8 +4,9 @@
 
 import { hull } from "./contact.js";
 import { helix } from "./forms.js";
-import { above_ground, window_of } from "./ground.js";
+import { above_ground, clip_to_panel } from "./ground.js";
 import { clamp, dot, plus, sub, turned } from "./lens.js";
+import { inside_planes } from "./pick.js";
 
 const WIDEST = 2.3,
   THINNEST = 0.5,
@@ -55,12 +56,7 @@ export class Sketch {
    */
   draw(frame, scale, number) {
     const { run, space, c, lens } = this;
-    c.save();
-    c.setTransform(1, 0, 0, 1, 0, 0);
-    c.beginPath();
-    c.rect(...window_of(lens, scale));
-    c.clip();
-    c.setTransform(scale, 0, 0, scale, 0, 0);
+    clip_to_panel(c, lens, scale);
     c.lineJoin = "round";
     c.lineCap = "round";
     for (const piece of space.pieces) this.piece(piece);
@@ -411,20 +407,8 @@ function shades(item, from, toward) {
     );
     return off < item.radius;
   }
-  let enters = 1e-3 * item.size,
-    leaves = Infinity;
-  for (const { n, d } of item.planes) {
-    const high = dot(n, from) - d,
-      rise = dot(n, toward);
-    if (Math.abs(rise) < 1e-12) {
-      if (high > 0) return false;
-    } else if (rise < 0) {
-      enters = Math.max(enters, -high / rise);
-    } else {
-      leaves = Math.min(leaves, -high / rise);
-    }
-  }
-  return enters < leaves;
+  const [enters, leaves] = inside_planes(item.planes, from, toward);
+  return Math.max(enters, 1e-3 * item.size) < leaves;
 }
 
 const meet = (/** @type {number[]} */ a, /** @type {number[]} */ b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
