@@ -1,6 +1,7 @@
 // The program of a formula: a list of instructions, each of which does one operation for many bodies.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "sim/math/expression.h"
@@ -52,13 +53,12 @@ Program::Program(const ExpressionGraph& graph, std::span<const int> outputs) {
     place[std::size_t(i)] = to;
     const auto at = [&](int node) { return node < 0 ? -1 : place[std::size_t(node)]; };
     code_.push_back({it.operation, to, at(it.a), at(it.b), at(it.c)});
-    int all[3] = {it.a, it.b, it.c};
+    const std::array<int, 3> all = {it.a, it.b, it.c};
     const int count = operands(it.operation);
-    std::sort(all, all + count);
     for (int k = 0; k < count; ++k) {
-      if (k > 0 && all[k] == all[k - 1]) continue;
-      const ExpressionGraph::Node& read = graph[all[k]];
-      if (last[std::size_t(all[k])] == i && !read.uniform && read.operation != Operation::variable)
+      if (std::find(all.begin(), all.begin() + k, all[std::size_t(k)]) != all.begin() + k) continue;
+      const ExpressionGraph::Node& read = graph[all[std::size_t(k)]];
+      if (last[std::size_t(all[std::size_t(k)])] == i && !read.uniform && read.operation != Operation::variable)
         free.push_back(place[std::size_t(all[k])]);
     }
   }
