@@ -16,6 +16,7 @@
 #include "app/console/commands.h"
 #include "app/console/exit.h"
 #include "app/console/interrupt.h"
+#include "app/console/options.h"
 #include "app/console/say.h"
 #include "app/console/waiting.h"
 #include "media/png.h"
