@@ -28,6 +28,30 @@ TEST(EveryName, IsOfOneFile) {
   EXPECT_THAT(clashing_names(tests, compiled_apart(tests / "CMakeLists.txt"), {tests, src}), IsEmpty());
 }
 
+TEST(EveryName, HasItsHeader) {
+  const std::filesystem::path src = std::filesystem::path(OBSCURA_SOURCE_DIR) / "src",
+                              tests = std::filesystem::path(OBSCURA_SOURCE_DIR) / "tests";
+  EXPECT_THAT(names_without_headers(src, {src}), IsEmpty());
+  EXPECT_THAT(names_without_headers(tests, {tests, src}), IsEmpty());
+}
+
+TEST_F(PlantedNames, WithoutTheirHeadersAreFound) {
+  plant("app/options.h",
+        "namespace obscura::app {\nvoid require(int n);\nstruct Flags { int n; };\nconstexpr int kMost = "
+        "3;\n}\n");
+  plant("app/through.h", "#include \"app/options.h\"\n");
+  plant("app/a.cpp", "#include \"app/through.h\"\nvoid f() { require(kMost); Flags flags; }\n");
+  plant("app/b.cpp",
+        "void g() {\n  require(\n    kMost);\n  if (!x) return require(2);\n  const Flags flags;\n}\n");
+  // a member, a name of its own, of another scope, and one that is only said to be somewhere
+  plant(
+      "app/c.cpp",
+      "struct Flags;\nvoid h(Flags& flags) { flags.require(1); other::require(2); const auto kMost = 1; }\n");
+  EXPECT_THAT(names_without_headers(src_, {src_}),
+              ElementsAre("app/b.cpp:5: Flags without options.h", "app/b.cpp:3: kMost without options.h",
+                          "app/b.cpp:2: require without options.h"));
+}
+
 TEST_F(PlantedNames, OfTwoFilesAreFoundWhateverTheyName) {
   plant("sim/a.cpp", R"(namespace obscura::sim {
 namespace {
