@@ -35,6 +35,7 @@ bool hides(const Defined& here, const Defined& header) {
 // a namespace: not of a member, not with another scope before them, and where they are first.
 struct Words {
   std::set<std::string> all, declared, values;  // values: not only called
+  std::set<std::string> usings;                 // of another scope: using sim::Vec3;
   std::map<std::string, int> used, calls;
 };
 
@@ -56,6 +57,12 @@ Words words_of(const Tokens& tokens) {
     if (word == "}" || (word == ";" && enumerates == 1)) enumerates = 0;
     if (!begins_word(word[0])) continue;
     words.all.insert(word);
+    if (word == "using" && after == "namespace") words.usings.insert(after);
+    if (word == "using" && text(i + 2) == "::") {
+      while (text(i + 2) == "::") i += 2;
+      words.usings.insert(text(i + 1));
+      continue;
+    }
     const bool typed = !before.empty() && begins_word(before[0]) && !no_types.contains(before),
                is_member = before == "." || (before == ">" && i > 1 && text(i - 2) == "-");
     const bool aligned = before == ")" && i > 3 && text(i - 4) == "alignas";
@@ -80,7 +87,16 @@ Complaints names_without_headers(const std::filesystem::path& top,
                                  const std::vector<std::filesystem::path>& roots) {
   std::map<std::filesystem::path, Words> words;
   std::map<std::string, Paths> types, functions;  // where each is declared
+  std::map<std::filesystem::path, std::vector<Defined>> defined;
+  std::map<std::string, std::set<std::string>> usings;  // of the files of a room
   Paths files;
+  const auto room_of = [&](const std::filesystem::path& file) {
+    for (const auto& root : roots) {
+      const auto name = file.lexically_relative(root);
+      if (*name.begin() != "..") return name.begin()->string();
+    }
+    return std::string();
+  };
   const auto read = [&](const std::filesystem::path& file) {
     const auto [at, is_new] = words.try_emplace(file);
     if (is_new) at->second = words_of(tokens_of(contents(file)));
@@ -93,8 +109,13 @@ Complaints names_without_headers(const std::filesystem::path& top,
     Paths all = included[file] = headers_of(file, roots);
     all.insert(file);
     for (const auto& each : all) {
-      if (!read(each) || each.extension() != ".h") continue;
-      for (const Defined& name : names_of(tokens_of(contents(each)))) {
+      if (!read(each)) continue;
+      defined[each] = names_of(tokens_of(contents(each)));
+      if (each.extension() != ".h") {
+        usings[room_of(each)].insert(words.at(each).usings.begin(), words.at(each).usings.end());
+        continue;
+      }
+      for (const Defined& name : defined.at(each)) {
         if (name.kind == Kind::function)
           functions[name.name].insert(each);
         else if (std::isupper(static_cast<unsigned char>(name.name[0])) || name.name[0] == 'k')
@@ -103,13 +124,6 @@ Complaints names_without_headers(const std::filesystem::path& top,
     }
   }
 
-  const auto room_of = [&](const std::filesystem::path& file) {
-    for (const auto& root : roots) {
-      const auto name = file.lexically_relative(root);
-      if (*name.begin() != "..") return name.begin()->string();
-    }
-    return std::string();
-  };
   Complaints missing;
   for (const auto& file : files) {
     const Words& own = words.at(file);
@@ -135,6 +149,27 @@ Complaints names_without_headers(const std::filesystem::path& top,
       }
     };
     look(own.used, types, {});
+    // what a file beside it takes from another namespace is there where both are compiled together
+    const auto seen = [&](const std::string& name) {
+      return std::any_of(headers.begin(), headers.end(), [&](const auto& header) {
+        const auto& there = defined.at(header);
+        const auto is_here = [&](const Defined& one) { return one.name == name; };
+        // of a class
+        if (words.at(header).declared.contains(name) && std::none_of(there.begin(), there.end(), is_here))
+          return true;
+        return words.at(header).usings.contains(name) ||
+               std::any_of(there.begin(), there.end(), [&](const Defined& one) {
+                 return is_here(one) &&
+                        std::any_of(defined.at(file).begin(), defined.at(file).end(),
+                                    [&](const Defined& here) { return here.scope.rfind(one.scope, 0) == 0; });
+               });
+      });
+    };
+    for (const auto& [name, line] : own.used)
+      if (types.contains(name) && usings[room_of(file)].contains(name) && !own.usings.contains(name) &&
+          !own.usings.contains("namespace") && !own.declared.contains(name) && !seen(name))
+        missing.push_back(file.lexically_relative(top).string() + ":" + std::to_string(line) + ": " + name +
+                          " without using");
     look(own.calls, functions, own.values);
   }
   return missing;

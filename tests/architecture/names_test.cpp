@@ -47,9 +47,16 @@ TEST_F(PlantedNames, WithoutTheirHeadersAreFound) {
   plant(
       "app/c.cpp",
       "struct Flags;\nvoid h(Flags& flags) { flags.require(1); other::require(2); const auto kMost = 1; }\n");
+  // that a file beside it takes from another namespace
+  plant("sim/vec.h", "namespace obscura::sim {\nusing Vec3 = double;\n}\n");
+  plant("app/d.cpp",
+        "#include \"sim/vec.h\"\nnamespace obscura::app {\nusing sim::Vec3;\nVec3 zero() { return 0; }\n}\n");
+  plant("app/e.cpp",
+        "#include \"sim/vec.h\"\nnamespace obscura::app {\nvoid take(sim::Vec3) {}\nvoid one() { Vec3 x = 1; "
+        "}\n}\n");
   EXPECT_THAT(names_without_headers(src_, {src_}),
               ElementsAre("app/b.cpp:5: Flags without options.h", "app/b.cpp:3: kMost without options.h",
-                          "app/b.cpp:2: require without options.h"));
+                          "app/b.cpp:2: require without options.h", "app/e.cpp:4: Vec3 without using"));
 }
 
 TEST_F(PlantedNames, OfTwoFilesAreFoundWhateverTheyName) {

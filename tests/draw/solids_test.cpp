@@ -17,6 +17,7 @@ namespace {
 
 using sim::JointKind;
 using sim::ShapeKind;
+using sim::Vec3;
 
 constexpr double kExact = 1e-9;  // page units: rounding of numbers about a thousand
 
