@@ -214,6 +214,132 @@ void add_joints(bool space, std::vector<Case>& table) {
        "it", 1, Vec3(half, 0, 0), 1e-9, 1e-9});
 }
 
+// Bodies and joints that are more than one constraint between two free bodies: limits, springs and motors of
+// joints, pulleys, gears, screws, chains, bonds.
+void add_mechanisms(bool space, std::vector<Case>& table) {
+  const std::string where = space ? "space" : "plane", hinge = space ? "hinge" : "pin";
+  const std::string size = space ? "size = [0.4, 0.1, 0.1]" : "size = [0.4, 0.1]";
+  const auto box = [&](const std::string& name, double x, double y, double vx, double vy, double spin) {
+    return fmt::format("[[box]]\nname = \"{}\"\nmass = 1\n{}\nposition = {}\nvelocity = {}\nspin = {}\n",
+                       name, size, place(space, x, y), place(space, vx, vy),
+                       space ? fmt::format("[0, 0, {:.17g}]", spin) : fmt::format("{:.17g}", spin));
+  };
+  const auto on_axle = [&](const std::string& type, const std::string& keys) {
+    return fmt::format("[[joint]]\nname = \"axle\"\ntype = \"{}\"\nbetween = [\"it\", \"room\"]\nat = {}\n{}",
+                       type, place(space, 0, 0), keys);
+  };
+  const double w = 120 * kDegree, r = 0.2, own = (0.16 + 0.01) / 12, I = own + r * r;
+  const auto turned = [&](double angle) { return Vec3(r * std::cos(angle), r * std::sin(angle), 0); };
+
+  // it turns evenly up to its limit, and stops there; iterations let an overlap of some millionths be
+  table.push_back(
+      {where + ": limits of a " + hinge,
+       empty_room(space, 0) + box("it", r, 0, 0, w * r, 120) + on_axle(hinge, "limits = [-30, 60]\n"), "it",
+       1, turned(60 * kDegree), 1e-12, 2e-6});
+  // a torsion pendulum through its rest
+  const double k = 2, W = std::sqrt(k / I);
+  table.push_back({where + ": spring of a " + hinge,
+                   empty_room(space, 0) + box("it", r, 0, 0, w * r, 120) +
+                       on_axle(hinge, "spring = { stiffness = 2, rest_angle = 0 }\n"),
+                   "it", 1, turned(w / W * std::sin(W)), 1e-11, 1e-9});
+  // a motor that follows a place, from its speed on
+  table.push_back({where + ": motor of a slider",
+                   empty_room(space, kG) + box("it", 0, 0, 0.6, 0, 0) +
+                       on_axle("slider", "axis = " + place(space, 1, 0) +
+                                             "\nmotor = { position = \"0.2*sin(3*t)\", most = 1000 }\n"),
+                   "it", 1, Vec3(0.2 * std::sin(3.0), 0, 0), 1e-9, 1e-6});
+  // Atwood's machine over two points, 1 kg and 2 kg
+  const auto weight = [&](const std::string& name, double x, int mass) {
+    return fmt::format("[[particle]]\nname = \"{}\"\nradius = 0.1\nmass = {}\nposition = {}\n", name, mass,
+                       place(space, x, 0));
+  };
+  table.push_back({where + ": pulley",
+                   empty_room(space, kG) + weight("it", -1, 1) + weight("other", 1, 2) +
+                       "[[joint]]\ntype = \"pulley\"\nbetween = [\"it\", \"other\"]\nover = [" +
+                       place(space, -1, 4) + ", " + place(space, 1, 4) + "]\n",
+                   "it", 0.8, Vec3(-1, kG / 3 * 0.32, 0), 1e-12, 1e-12});
+  // A torque turns two boxes at -2 to 1: T / (I1 + I2 / 4). By iterations it is an impulse in each of 600
+  // steps a second, which differs from a force by up to a h^2 / 8.
+  const double torque = 0.1, turn = torque / (I + own / 4) / 2, impulses = r * 2 * turn / 8 / (600 * 600.0);
+  table.push_back({where + ": gear",
+                   empty_room(space, 0) + box("it", r, 0, 0, 0, 0) + box("other", 3, 0, 0, 0, 0) +
+                       on_axle(hinge, "motor = { speed = 100000, most = 0.1 }\n") +
+                       "[[joint]]\nname = \"second\"\ntype = \"" + hinge +
+                       "\"\nbetween = [\"other\", \"room\"]\n[[joint]]\ntype = \"gear\"\njoints = [\"axle\", "
+                       "\"second\"]\nratio = -2\n",
+                   "it", 1, turned(turn), 1e-12, impulses});
+  // a screw that falls turns: m g = (m + I (2 pi / pitch)^2) a
+  if (space)
+    table.push_back({where + ": screw",
+                     empty_room(space, kG) + box("it", 0, 0, 0, 0, 0) +
+                         on_axle("screw", "axis = [0, 1, 0]\npitch = 0.5\n"),
+                     "it", 1, Vec3(0, -kG / (1 + own * 16 * std::numbers::pi * std::numbers::pi) / 2, 0),
+                     1e-9, 1e-9});
+  // a link of a chain on a pin
+  table.push_back({where + ": link of a chain",
+                   empty_room(space, 0) + box("it", r, 0, 0, w * r, 120) + on_axle(hinge, "") +
+                       "[[chain]]\nof = [\"it\"]\n",
+                   "it", 1, turned(w), 1e-12, 1e-11});
+  // two bonded boxes, thrown and spinning about their common centre
+  table.push_back({where + ": bond",
+                   empty_room(space, kG) + box("it", r, 0, 1, 2 + w * r, 120) +
+                       box("other", -r, 0, 1, 2 - w * r, 120) + "[[bond]]\nof = [\"it\", \"other\"]\n",
+                   "it", 1, Vec3(1, 2 - kG / 2, 0) + turned(w), 1e-11, 1e-11});
+}
+
+// Contacts with what is fixed or moved: a slope, a belt, a table that accelerates, a wall that strikes, a
+// floor.
+void add_moved(bool space, std::vector<Case>& table) {
+  const std::string where = space ? "space" : "plane";
+  const auto block = [&](double x, double y, const std::string& keys = "") {
+    return std::string("[[box]]\nname = \"it\"\nmass = 1\nfriction = 0.3\nelasticity = 0\nsize = ") +
+           (space ? "[0.4, 0.2, 0.2]" : "[0.4, 0.2]") + "\nposition = " + place(space, x, y) + "\n" + keys;
+  };
+  const auto base = [&](const std::string& keys, double elasticity = 0) {
+    return fmt::format("[[box]]\nname = \"base\"\nfriction = 0.3\nelasticity = {}\nsize = ", elasticity) +
+           (space ? "[8, 0.2, 2]" : "[8, 0.2]") + "\nposition = " + place(space, 0, -0.1) + "\n" + keys;
+  };
+  const auto turned = [&](double degrees) {
+    return space ? fmt::format("orientation = [0, 0, {}]\n", degrees) : fmt::format("angle = {}\n", degrees);
+  };
+  const double mu = 0.3;
+
+  // Down a slope of 30 degrees from rest, a = g (sin - mu cos). The base lies 0.1 below the middle of its
+  // top.
+  const double sine = 0.5, cosine = std::sqrt(0.75);
+  const auto along = [&](double way) {
+    return Vec3(0.1 * sine + 0.1 * sine + way * cosine, -0.1 + 0.1 * cosine + 0.1 * cosine - way * sine, 0);
+  };
+  table.push_back({where + ": slide down a slope",
+                   empty_room(space, kG) + base("fixed = true\n" + turned(-30)) +
+                       block(along(-2)[0], along(-2)[1], turned(-30)),
+                   "it", 1, along(-2 + kG * (sine - mu * cosine) / 2), 1e-12, 1e-12});
+  // at rest on a belt of speed u: it slips for u / (mu g), then goes along
+  const double u = 1.5, slips = u / (mu * kG);
+  table.push_back(
+      {where + ": belt",
+       empty_room(space, kG) +
+           base(std::string("fixed = true\nsurface_speed = ") + (space ? "[1.5, 0, 0]" : "1.5") + "\n") +
+           block(-2, 0.1),
+       "it", 1, Vec3(-2 + u * (1 - slips / 2), 0.1, 0), 1e-11, 2e-6});
+  // on a table that accelerates by less than mu g: it goes along
+  table.push_back({where + ": table that accelerates",
+                   empty_room(space, kG) + base("motion = { x = \"t^2\" }\n") + block(-2, 0.1), "it", 1,
+                   Vec3(-1, 0.1, 0), 1e-12, 1e-11});
+  // struck by what is moved at 2 m/s, 0.5 m away: it leaves with (1 + e) times that
+  const std::string ball = "[[ball]]\nradius = 0.1\nelasticity = 0.5\nname = ";
+  table.push_back({where + ": struck by what is moved",
+                   empty_room(space, 0) + ball + "\"hand\"\nmotion = { x = \"2*t\" }\nposition = " +
+                       place(space, 0, 1) + "\n" + ball + "\"it\"\nposition = " + place(space, 0.7, 1) + "\n",
+                   "it", 1, Vec3(0.7 + 3 * 0.75, 1, 0), 1e-11, 1e-11});
+  // dropped from 0.5 m onto what is fixed: up again with e times the speed
+  const double fall = std::sqrt(2 * 0.5 / kG), t = 0.5 - fall;
+  table.push_back({where + ": bounce",
+                   empty_room(space, kG) + base("fixed = true\n", 0.5) + ball +
+                       "\"it\"\nposition = " + place(space, 0, 0.6) + "\n",
+                   "it", 0.5, Vec3(0, 0.1 + 0.5 * kG * fall * t - kG / 2 * t * t, 0), 1e-9, 1e-9});
+}
+
 TEST(Rivals, ContactsInThePlane) {
   std::vector<Case> table;
   add_contacts(false, table);
@@ -232,6 +358,27 @@ TEST(Rivals, JointsInThePlane) {
 TEST(Rivals, JointsInSpace) {
   std::vector<Case> table;
   add_joints(true, table);
+  compare(table);
+}
+
+TEST(Rivals, MechanismsInThePlane) {
+  std::vector<Case> table;
+  add_mechanisms(false, table);
+  compare(table);
+}
+TEST(Rivals, MechanismsInSpace) {
+  std::vector<Case> table;
+  add_mechanisms(true, table);
+  compare(table);
+}
+TEST(Rivals, OnWhatIsFixedOrMovedInThePlane) {
+  std::vector<Case> table;
+  add_moved(false, table);
+  compare(table);
+}
+TEST(Rivals, OnWhatIsFixedOrMovedInSpace) {
+  std::vector<Case> table;
+  add_moved(true, table);
   compare(table);
 }
 
