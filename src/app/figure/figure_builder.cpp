@@ -124,7 +124,7 @@ FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::str
 
   int wanted = 0;
   for (std::int64_t run = 0; run < variants.size; ++run) {
-    const std::string said = variants.words(run);
+    const std::string said = variants.formula(run);
     scene::Scene scene = with_run_marks(read(variants.sets(run, sets)));
     if (options.theme) scene.look.theme = *options.theme;
     const draw::Figure& figure = scene.figure;
@@ -151,7 +151,7 @@ FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::str
       throw UsageError(fmt::format("{}: {:.0f} exposures are more than {}, the most a panel has", scene.file,
                                    sim::value(times.back()) / sim::value(*every_), kMostExposures));
     take(scene, times, said);
-    variants_.push_back({scene, variants.keys.empty() ? "" : variants[run].back()});
+    variants_.push_back({scene, variants.keys.empty() ? "" : Variation::spoken(variants[run].back())});
   }
   const int n = int(panels_.size()) *
                 (panels_.front().cast.dimension == 3 ? int(panels_.front().scene.cameras.size()) : 1);
@@ -200,7 +200,7 @@ std::vector<FigureBuilder::Cell> FigureBuilder::cells() const {
   std::vector<Cell> all;
   for (int camera = 0; camera < seen; ++camera) {
     for (const Panel& panel : panels_) {
-      const std::string name = seen > 1 ? cameras[std::size_t(camera)].name : "";
+      const std::string name = seen > 1 ? '"' + cameras[std::size_t(camera)].name + '"' : "";
       const std::size_t index = all.size();
       const std::string title = index < titles.size() ? titles[index] : "";
       all.push_back({&panel, camera, int(index),
@@ -264,19 +264,9 @@ Page FigureBuilder::page() const {
       const double baseline = 9 * draw::kPoint;
       list.add(words(fmt::format("({})", char('a' + i % 26)), draw::Face::bold, 9,
                      {2 * draw::kPoint, baseline}, colours.ink));
-      // what is varied in words, the time as mathematics; or what the scene says
-      double x = 18 * draw::kPoint;
-      const bool named = !cells[i].title.empty();
-      const std::string& said = named ? cells[i].title : cells[i].words;
-      const auto clock = named ? 0 : said.rfind("t = ");
-      const std::string plain = said.substr(0, clock);
-      if (!plain.empty()) {
-        list.add(words(plain, draw::Face::regular, 8.5, {x, baseline}, colours.ink));
-        x += draw::width_of(plain, draw::Face::regular, 8.5 * draw::kPoint, true);
-        if (plain.back() == ' ') x += 0.25 * 8.5 * draw::kPoint;
-      }
-      if (clock != std::string::npos)
-        draw::add(draw::formula(said.substr(clock), 8.5 * draw::kPoint, colours.ink), {x, baseline}, list);
+      // what the scene says, or what sets it apart
+      const std::string& said = cells[i].title.empty() ? cells[i].words : cells[i].title;
+      draw::add(draw::formula(said, 8.5 * draw::kPoint, colours.ink), {18 * draw::kPoint, baseline}, list);
     }
     all.add(list, 1, corner);
     row_height = std::max(row_height, height);

@@ -1,6 +1,7 @@
 #include "app/run/variation.h"
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -106,8 +107,42 @@ std::vector<std::string> Variations::sets(std::int64_t run, std::vector<std::str
 std::string Variations::words(std::int64_t run) const {
   const std::vector<std::string> values = (*this)[run];
   std::string text;
-  for (std::size_t k = 0; k < keys.size(); ++k) text += (k ? ", " : "") + keys[k].name() + " = " + values[k];
+  for (std::size_t k = 0; k < keys.size(); ++k) text += (k ? ", " : "") + keys[k].words(values[k]);
   return text;
+}
+
+std::string Variations::formula(std::int64_t run) const {
+  const std::vector<std::string> values = (*this)[run];
+  std::string text;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const bool number = sim::parse_rational(values[k]).has_value();
+    const bool alone = std::count_if(keys.begin(), keys.end(), [&](const Variation& other) {
+                         return other.name() == keys[k].name();
+                       }) == 1;
+    text += k ? ", " : "";
+    text += number ? keys[k].symbol(!alone) + " = " + values[k] : '"' + keys[k].words(values[k]) + '"';
+  }
+  return text;
+}
+
+std::string Variation::spoken(const std::string& value) {
+  static constexpr std::pair<std::string_view, const char*> kSpoken[] = {
+      {"euler", "Euler"}, {"rk4", "Runge-Kutta"}, {"true", "yes"}, {"false", "no"}};
+  for (const auto& [word, said] : kSpoken)
+    if (value == word) return said;
+  std::string text = value;
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+std::string Variation::words(const std::string& value) const {
+  const std::string key = spoken(name());
+  if (value == "true") return key;
+  if (value == "false") return "no " + key;
+  const bool word = std::all_of(value.begin(), value.end(),
+                                [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; }) &&
+                    !value.empty() && std::isalpha(static_cast<unsigned char>(value[0]));
+  return word ? spoken(value) : key + " = " + value;
 }
 
 std::string Variation::name() const {
@@ -115,7 +150,7 @@ std::string Variation::name() const {
   return dot == path.npos ? path : path.substr(dot + 1);
 }
 
-std::string Variation::symbol() const {
+std::string Variation::symbol(bool whose) const {
   static constexpr std::pair<std::string_view, const char*> kSymbols[] = {
       {"angle", "\\theta"}, {"friction", "\\mu"},   {"elasticity", "e"}, {"mass", "m"},
       {"stiffness", "k"},   {"rest_length", "l_0"}, {"length", "l"},     {"radius", "r"},
@@ -123,16 +158,14 @@ std::string Variation::symbol() const {
   static constexpr std::string_view kSections[] = {"physics", "room", "contact", "film", "look", "camera"};
   const std::string key = name();
   std::string of = path.substr(0, path.size() > key.size() ? path.size() - key.size() - 1 : 0);
-  const auto words = [](std::string text) {
-    std::replace(text.begin(), text.end(), '_', ' ');
-    return "\"" + text + "\"";
-  };
+  const auto quoted = [](const std::string& text) { return '"' + spoken(text) + '"'; };
   const auto found = std::find_if(std::begin(kSymbols), std::end(kSymbols),
                                   [&](const auto& each) { return each.first == key; });
-  if (found == std::end(kSymbols)) return words(key);
+  if (found == std::end(kSymbols)) return quoted(key);
   const std::string symbol = found->second;
   const bool section = std::find(std::begin(kSections), std::end(kSections), of) != std::end(kSections);
-  return of.empty() || section || symbol.find('_') != symbol.npos ? symbol : symbol + "_{" + words(of) + "}";
+  if (!whose || of.empty() || section || symbol.find('_') != symbol.npos) return symbol;
+  return symbol + "_{" + quoted(of) + "}";
 }
 
 double Variation::number(const std::string& value) const {

@@ -18,8 +18,13 @@ struct Variation {
 
   /// The key alone: "elasticity".
   std::string name() const;
-  /// The same as mathematics, for an axis: the quantity's letter with the name of what has it, or words.
-  std::string symbol() const;
+  /// The same as mathematics, for an axis: the quantity's letter, `whose` with the name of what has it, or
+  /// words.
+  std::string symbol(bool whose = true) const;
+  /// For a person: "elasticity = 0.1"; of a key whose values are words the word alone, as "Euler".
+  std::string words(const std::string& value) const;
+  /// A value for a person: "Euler" for euler, a space for an underscore.
+  static std::string spoken(const std::string& value);
   /// A value that is a number or a fraction. Throws UsageError where it is none.
   double number(const std::string& value) const;
 };
@@ -40,6 +45,8 @@ struct Variations {
   std::vector<std::string> sets(std::int64_t run, std::vector<std::string> sets) const;
   /// The same for a person: "elasticity = 0.1, seed = 3".
   std::string words(std::int64_t run) const;
+  /// The same as mathematics: "e = 0.1", "\"Euler\"".
+  std::string formula(std::int64_t run) const;
 };
 
 }  // namespace obscura::app

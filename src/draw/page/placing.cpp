@@ -150,8 +150,7 @@ std::vector<Placing::Candidate> Placing::along(const Point& tail, const Point& t
       for (const double side : {first, -first}) {
         const Point n = side * v;
         const double far = gap + off * unit;
-        all.push_back({at + (fixed ? clear_line(n, far, size) : clear(n, far, size)), ring + order,
-                       off > (fixed ? 10 : 6)});
+        all.push_back({at + clear_line(n, far, size), ring + order, off > (fixed ? 10 : 6)});
         order += 0.3 * unit;
       }
     }
