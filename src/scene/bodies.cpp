@@ -153,9 +153,10 @@ void add(BuilderContext<D>& making, const Fields& fields, const BodyKind& kind, 
   const Node* arrows = fields.given("arrows");
   look.velocity = arrows ? has(*arrows, "velocity") : making.velocity && !still;
   look.contact = arrows ? has(*arrows, "contact") : making.contact && !still;
-  if (fields.given("label")) {
-    look.label = fields.text("label");
-    const auto wrong = i == 0 ? draw::mistake(look.label) : std::nullopt;
+  if (const Node* label = fields.given("label")) {
+    const std::size_t texts = label->is_list() ? label->list().size() : 1;
+    look.label = label->is_list() ? label->list()[std::size_t(i) % texts].text() : label->text();
+    const auto wrong = std::size_t(i) < texts ? draw::mistake(look.label) : std::nullopt;
     if (wrong)
       making.complaints.add(fields.place("label"),
                             fmt::format("'label', column {}: {}", wrong->column, wrong->what));

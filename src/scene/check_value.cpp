@@ -48,6 +48,9 @@ class Values : private Reporter {
       case Form::boolean:
         return is(std::holds_alternative<bool>(node.value));
       case Form::text:
+        if (key.varies && node.is_list() && !node.list().empty())
+          return each(node.list(), [&](const Node& it) { return it.is_text() || mistyped(it, key); });
+        return is(node.is_text());
       case Form::thing:
         return is(node.is_text());
       case Form::which:

@@ -783,7 +783,7 @@ std::string row(const Key& key, const std::string& section) {
   std::string kind = type(key);
   if (!key.unit.empty()) kind += ", " + key.unit;
   if (const std::string r = range_text(key); !r.empty()) kind += ", " + r;
-  if (key.varies) kind += key.form == Form::color ? "; or a list" : "; *varies*";
+  if (key.varies) kind += key.form == Form::color || key.form == Form::text ? "; or a list" : "; *varies*";
   const std::string absent = key.required           ? "needed"
                              : !key.absent.empty()  ? key.absent
                              : key.fallback.empty() ? ""

@@ -82,6 +82,7 @@ Json value(const Key& key) {
     case Form::boolean:
       return {{"type", "boolean"}};
     case Form::text:
+      return key.varies ? any_of({string, list_of(string, 1, 0)}) : string;
     case Form::thing:
       return string;
     case Form::things:

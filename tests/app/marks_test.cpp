@@ -274,46 +274,80 @@ bool crosses(const draw::Rect& rect, const draw::Point& a, const draw::Point& b)
   return from < to;
 }
 
-/// Words cover no body's outline, no arrow and no hatching. Letters' own boxes, a pixel in.
+/// The corners of a body's forms on the page, one list a form.
+std::vector<std::vector<draw::Point>> outlines(const sim::SceneInfo::Body& body, int index,
+                                               const sim::Snapshot& now, const draw::Projection& page) {
+  const auto at = [&](const sim::Vec3& local) { return page.page(draw::place({index, local}, now)); };
+  std::vector<std::vector<draw::Point>> all;
+  const auto add = [&](const auto& form, const sim::Vec3& center, const Eigen::Quaterniond& turn) {
+    std::vector<draw::Point>& outline = all.emplace_back();
+    for (int k = 0; k < 24 && form.kind != sim::ShapeKind::polygon; ++k) {
+      const double way = k * 0.26179938779914941;
+      sim::Vec3 local = form.radius * sim::Vec3(std::cos(way), std::sin(way), 0);
+      if (form.kind == sim::ShapeKind::box)
+        local = form.half.cwiseProduct(sim::Vec3(k / 6 == 0 || k / 6 == 3 ? 1 : -1, k / 6 < 2 ? 1 : -1, 0));
+      outline.push_back(at(center + turn * local));
+    }
+    for (const sim::Vec3& vertex : form.vertices) outline.push_back(at(center + turn * vertex));
+  };
+  for (const auto& part : body.parts) add(part, part.center, part.turn);
+  if (body.parts.empty()) add(body, sim::Vec3::Zero(), Eigen::Quaterniond::Identity());
+  return all;
+}
+
+/// What words should keep off in a picture of a film in the plane.
+std::vector<std::pair<draw::Point, draw::Point>> lines_there(const Filmed& film, const sim::Snapshot& now,
+                                                             double at) {
+  std::vector<std::pair<draw::Point, draw::Point>> lines;
+  const draw::Projection page = film.artist.projection(0, now);
+  const sim::SceneInfo& cast = film.artist.scene_info();
+  for (std::size_t i = 0; i < cast.bodies.size(); ++i)
+    for (const auto& outline : outlines(cast.bodies[i], int(i), now, page))
+      for (std::size_t k = 0; k < outline.size(); ++k)
+        lines.emplace_back(outline[k], outline[(k + 1) % outline.size()]);
+  // the hatching behind the walls
+  for (const draw::HalfPlane& wall : draw::half_planes(cast, *page.view())) {
+    const draw::Point along(-wall.normal.y(), wall.normal.x());
+    for (const double deep : {2.0, 8.0, 14.0, 20.0}) {
+      const draw::Point on = wall.point - deep * film.artist.weight() * wall.normal;
+      lines.emplace_back(on - 1e4 * along, on + 1e4 * along);
+    }
+  }
+  draw::Scales scales = film.ahead.annotations->scales();
+  for (const draw::Marks::Vector& vector : film.scene.film.marks.vectors) {
+    if (!vector.shown.has(now.time, at)) continue;
+    const double* scale = draw::scale_of(vector.quantity, scales);
+    for (const draw::Reading& each : draw::readings(vector, cast, now))
+      lines.emplace_back(page.page(each.tail), page.page(each.tail + (scale ? *scale : 1) * each.value));
+  }
+  return lines;
+}
+
+/// Words cover no body's outline, no arrow and no hatching: letters' own boxes, a pixel in. All shipped
+/// scenes of the plane that say something, each tenth of a second; where many bodies pass by, some may pass
+/// under words, which have a plate then.
 TEST(Marks, WordsKeepClearOfBodiesAndArrows) {
-  for (const char* name : {"slope", "swing"}) {
+  const std::array<std::pair<const char*, double>, 12> films{{{"slope", 0},
+                                                              {"swing", 0},
+                                                              {"energy", 0},
+                                                              {"kapitza", 0},
+                                                              {"loop_the_loop", 0},
+                                                              {"spring", 0.08},
+                                                              {"atwood", 0.005},
+                                                              {"crossed_fields", 0.006},
+                                                              {"pendulum", 0.006},
+                                                              {"brachistochrone", 0.01},
+                                                              {"block_and_tackle", 0.02},
+                                                              // six begin at one
+                                                              {"drag", 0.1}}};
+  for (const auto& [name, most] : films) {
     Filmed film(kScenes + name + ".toml");
-    int looked = 0;
-    for (std::int64_t frame = 0; frame < film.shots.size(); frame += 5) {
+    int looked = 0, covered = 0;
+    std::map<std::string, std::vector<double>> where;
+    for (std::int64_t frame = 0; frame < film.shots.size(); frame += 6) {
       const sim::Snapshot now = film.now(frame);
-      const draw::Projection page = film.artist.projection(0, now);
       const draw::List list = film.marks(now, frame);
-      std::vector<std::pair<draw::Point, draw::Point>> lines;
-      const sim::SceneInfo& cast = film.artist.scene_info();
-      for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
-        std::vector<draw::Point> outline;
-        for (int k = 0; k < 24; ++k) {
-          const sim::SceneInfo::Body& body = cast.bodies[i];
-          const double turn = k * 0.26179938779914941;
-          sim::Vec3 local = body.radius * sim::Vec3(std::cos(turn), std::sin(turn), 0);
-          if (body.kind == sim::ShapeKind::box)
-            local =
-                body.half.cwiseProduct(sim::Vec3(k / 6 == 0 || k / 6 == 3 ? 1 : -1, k / 6 < 2 ? 1 : -1, 0));
-          outline.push_back(page.page(draw::place({int(i), local}, now)));
-        }
-        for (std::size_t k = 0; k < outline.size(); ++k)
-          lines.emplace_back(outline[k], outline[(k + 1) % outline.size()]);
-      }
-      // the hatching behind the walls
-      for (const draw::HalfPlane& wall : draw::half_planes(cast, *page.view())) {
-        const draw::Point along(-wall.normal.y(), wall.normal.x());
-        for (const double deep : {2.0, 8.0, 14.0, 20.0}) {
-          const draw::Point at = wall.point - deep * film.artist.weight() * wall.normal;
-          lines.emplace_back(at - 1e4 * along, at + 1e4 * along);
-        }
-      }
-      draw::Scales scales = film.ahead.annotations->scales();
-      for (const draw::Marks::Vector& vector : film.scene.film.marks.vectors) {
-        if (!vector.shown.has(now.time, film.film(frame))) continue;
-        const double* scale = draw::scale_of(vector.quantity, scales);
-        for (const draw::Reading& each : draw::readings(vector, cast, now))
-          lines.emplace_back(page.page(each.tail), page.page(each.tail + (scale ? *scale : 1) * each.value));
-      }
+      const auto lines = lines_there(film, now, film.film(frame));
       for (const draw::Text& text : list.texts) {
         // words of an arrow that has all but gone have too
         if (text.spans[0].color.a < 100) continue;
@@ -324,11 +358,20 @@ TEST(Marks, WordsKeepClearOfBodiesAndArrows) {
         }
         const draw::Rect rect{text.at.x() + 1, text.at.y() - 0.62 * size, width - 2, 0.6 * size};
         ++looked;
-        for (const auto& [a, b] : lines)
-          EXPECT_FALSE(crosses(rect, a, b)) << name << ": \"" << said(text) << "\" at frame " << frame;
+        if (std::none_of(lines.begin(), lines.end(),
+                         [&](const auto& line) { return crosses(rect, line.first, line.second); }))
+          continue;
+        ++covered, where[said(text).substr(0, 4)].push_back(now.time);
       }
     }
-    EXPECT_GT(looked, 50) << name;
+    std::string told;
+    for (const auto& [words, times] : where) {
+      told += " \"" + words + "\" at";
+      for (std::size_t k = 0; k < times.size(); k += std::max<std::size_t>(1, times.size() / 8))
+        told += " " + std::to_string(times[k]).substr(0, 4);
+    }
+    EXPECT_GT(looked, 20) << name;
+    EXPECT_LE(covered, most * looked) << name << ": " << covered << " of " << looked << told;
   }
 }
 

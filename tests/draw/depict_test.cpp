@@ -199,6 +199,22 @@ TEST(Depict, PointsAreDotsOfOneSizeThatShrinkInACrowd) {
   EXPECT_GE(radius(20000), 1.6);
 }
 
+/// In a crowd of small boxes their fills are seen, not a net of outlines.
+TEST(Depict, SmallBoxesHaveThinOutlinesAndDarkerFills) {
+  const auto box = [](double half) {
+    Made made = room(8, 4.5);
+    made.body(sim::ShapeKind::box, {4, 2, 0}, 1);
+    const View view = made.depictor().view(0);
+    made.cast.bodies[0].half = {half / view.scale, half / view.scale, 0};
+    return made.picture().moving.boxes.at(0);
+  };
+  const Box large = box(40), limit = box(10), small = box(5);
+  EXPECT_NEAR(limit.line, large.line, 1e-9);
+  EXPECT_LT(small.line, 0.15 * 5);
+  EXPECT_EQ(limit.fill, large.fill);
+  EXPECT_LT(small.fill.r + small.fill.g + small.fill.b, large.fill.r + large.fill.g + large.fill.b);
+}
+
 TEST(Depict, AxesReadOnTheFill) {
   // the contrast of WCAG 2: 3 is enough for graphics
   auto luminance = [](Color c) {

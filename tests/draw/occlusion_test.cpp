@@ -147,6 +147,38 @@ TEST(Darkness, IsThereOnlyWhereBodiesAreNear) {
     EXPECT_EQ(again.solids[0]->vertices[i].lit, close.solids[0]->vertices[i].lit);
 }
 
+/// Where a body with a trail has left the picture, an arrow at the edge says where it went; also where it is
+/// behind the eye.
+TEST(SpaceTrails, OfABodyThatLeftEndInAnArrowAtTheEdge) {
+  BoxesInSpace made;
+  made.box({0, 0.2, 0}, {0.2, 0.2, 0.2});
+  made.look.bodies.resize(made.cast.bodies.size());
+  made.look.bodies[0].trail = 1;
+  const CameraProjection lens = made.artist().lens(made.now);
+  const Rect& w = lens.window;
+  const Point half = Point(w.width, w.height) / 2, middle = Point(w.x, w.y) + half;
+  const auto tip = [&](const Vec3& at) -> std::optional<Point> {
+    made.now.bodies[0].position = at;
+    const Picture picture = made.picture();
+    if (picture.moving.polygons.empty()) return {};
+    return picture.moving.points[std::size_t(picture.moving.polygons.back().begin)];
+  };
+  EXPECT_FALSE(tip({0, 0.2, 0}));
+  for (const Vec3& side : {Vec3(lens.right), Vec3(-lens.right), Vec3(lens.up + 0.2 * lens.right)})
+    for (const double back : {0.0, 0.5, 2.0}) {
+      // beside the target, nearer to the eye, behind it
+      const Vec3 far = lens.target + back / lens.per_distance * lens.back + 40 / lens.per_distance * side;
+      const auto found = tip(far);
+      ASSERT_TRUE(found) << back;
+      EXPECT_GT((*found - middle).dot(Point(side.dot(lens.right), -side.dot(lens.up))), 0);
+      const Point from_edge = half - (*found - middle).cwiseAbs();
+      EXPECT_GT(from_edge.minCoeff(), 0);
+      EXPECT_LT(from_edge.minCoeff(), 20);
+    }
+  made.look.bodies[0].trail = 0;
+  EXPECT_FALSE(tip({40, 0.2, 0})) << "without a trail";
+}
+
 /// From what flies a dashed line leads to the point of the ground under it, where a cross lies.
 TEST(DropLines, LeadFromWhatFliesToTheGround) {
   BoxesInSpace made;

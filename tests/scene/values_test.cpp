@@ -176,7 +176,9 @@ TEST(Copies, ValuesMayVaryOverThem) {
   const Scene it = scene(
       "[[particle]]\nelasticity = { from = 0, to = 1 }\nmass = [1, 2, 4, 8, 16]\ncolor = [\"blue\", "
       "\"#ff0000\"]\nvelocity = { from = [0, 0], to = [2, "
-      "4] }\ncopies = { count = 5 }");
+      "4] }\nlabel = [\"e = 0\", \"a\", \"b\"]\ncopies = { count = 5 }");
+  EXPECT_EQ(it.look.bodies[2].label, "b");
+  EXPECT_EQ(it.look.bodies[3].label, "e = 0");
   EXPECT_EQ(it.plane().model.bodies[0].elasticity, 0);
   EXPECT_EQ(it.plane().model.bodies[1].elasticity, 0.25);
   EXPECT_EQ(it.plane().model.bodies[4].elasticity, 1);

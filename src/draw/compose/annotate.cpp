@@ -26,9 +26,17 @@ constexpr double kTail = 1.7;           // widths of an arrow: radius of the dot
 constexpr double kFull = 0.5;        // of an arrow's growth: from here on its words are as strong as others
 constexpr double kOutOfBall = 0.35;  // of a ball's radius: how far beyond it an arrow's words are as strong
 
-constexpr std::size_t kManyNames = 40;  // from here on a name stands above its body or below
-constexpr double kNameGap = 1.3;        // from a body to its name, as against others
-constexpr double kLeader = 6;           // points: farther off words have a line to what they name
+constexpr std::size_t kManyNames = 40;                 // from here on a name stands above its body or below
+constexpr double kBeside = 1.7, kBesideInPrint = 2.1;  // gaps: from an arrow to its words
+constexpr double kNameGap = 1.3;                       // from a body to its name, as against others
+constexpr double kBesideArrows = 4;                    // points: the cost of a place that turns with an arrow
+constexpr double kSteady = 0.25;  // of its greatest length: an arrow that is never shorter
+constexpr double kLeader = 6;     // points: farther off words have a line to what they name
+
+// of a body one arrow, from its centre
+constexpr Quantity kSingle[] = {Quantity::velocity, Quantity::acceleration, Quantity::momentum,
+                                Quantity::weight,   Quantity::net_force,    Quantity::drag,
+                                Quantity::field};
 
 using sim::Vec3;
 
@@ -80,8 +88,9 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   placing_.avoid(tail, end, 4);
   // words come and go with a small arrow
   if (film()) fade(label, (arrows[0].grow - 0.2) / (kFull - 0.2));
-  word(key, label, Placing::along(tail, end, 1.7 * gap_, size(label), point_, film()), (tail + end) / 2,
-       std::pair(tail, end));
+  word(key, label,
+       Placing::along(tail, end, (film() ? kBeside : kBesideInPrint) * gap_, size(label), point_, film()),
+       (tail + end) / 2, std::pair(tail, end));
   return true;
 }
 
@@ -454,8 +463,32 @@ void Notes::label(int index, const Marks::Label& label) {
   word(key, f, places, at);
 }
 
+// The ways of the arrows of a body that begin at its centre and are never short, in a film: for places that
+// turn with them.
+std::vector<Point> Notes::steady_arrows(int body, const Marks& marks) const {
+  std::vector<Point> ways;
+  if (!how_.plan) return ways;
+  const Vec3& center = now_.bodies[std::size_t(body)].position;
+  for (std::size_t i = 0; i < marks.vectors.size() && marks.names.size() <= kManyNames; ++i) {
+    const Marks::Vector& vector = marks.vectors[i];
+    const bool single =
+        std::find(std::begin(kSingle), std::end(kSingle), vector.quantity) != std::end(kSingle);
+    if (vector.body != body || vector.at || !single) continue;
+    const auto range = how_.plan->ranges.find({WordKey::vector, int(i)});
+    if (range == how_.plan->ranges.end() || !(range->second.low > kSteady * range->second.high)) continue;
+    const Vec3 value = sum(vector.quantity, body, cast_, now_);
+    const double step = 1 / view_.scale_at(center);
+    const Point way = value.norm() > 0
+                          ? Point(view_.page(center + step * value.normalized()) - view_.page(center))
+                          : Point(0, 1);
+    ways.push_back(way.norm() > 1e-3 ? Point(way.normalized()) : Point(0, 1));
+  }
+  return ways;
+}
+
 // Beside the body, however it is turned: best above it.
-void Notes::name(int index, const Marks::Name& name, bool many) {
+void Notes::name(int index, const Marks::Name& name, const Marks& marks) {
+  const bool many = marks.names.size() > kManyNames;
   const Vec3& center = now_.bodies[std::size_t(name.body)].position;
   if (!view_.before(center)) return;
   const Point at = view_.page(center);
@@ -504,6 +537,16 @@ void Notes::name(int index, const Marks::Name& name, bool many) {
     }
     if (many) break;
   }
+  // beside its arrows, however they turn
+  for (const Point& way : steady_arrows(name.body, marks)) {
+    const Point across(-way.y(), way.x());
+    for (const double off : {0.0, 6.0})
+      for (const Point& n : {Point(-way), across, Point(-across)}) {
+        double reach = n.cwiseAbs().dot(half) + kNameGap * gap_ + off * point_, outer = 0;
+        for (const Point& p : outline) outer = std::max(outer, (p - at).dot(n));
+        places.push_back({at + (reach + outer) * n, (kBesideArrows + off) * point_, off > kLeader});
+      }
+  }
   word({WordKey::name, index}, f, places, at);
   if (!words_.empty() && words_.back().key == WordKey{WordKey::name, index}) words_.back().outline = outline;
 }
@@ -548,8 +591,7 @@ void annotate(const Marks& marks, const Scales& scales, const sim::SceneInfo& ca
   each(marks.vectors, [&](int i, const Marks::Vector& vector) { notes.vector(i, vector, scales); });
   each(marks.points, [&](int i, const Marks::Point& point) { notes.point(i, point); });
   each(marks.labels, [&](int i, const Marks::Label& label) { notes.label(i, label); });
-  for (std::size_t i = 0; i < marks.names.size(); ++i)
-    notes.name(int(i), marks.names[i], marks.names.size() > kManyNames);
+  for (std::size_t i = 0; i < marks.names.size(); ++i) notes.name(int(i), marks.names[i], marks);
   notes.finish();
 }
 

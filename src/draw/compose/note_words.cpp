@@ -22,6 +22,8 @@ constexpr double kAngle = 13;              // radius of an arc
 constexpr double kOffHatching = 2.5;       // from it to the words of a film
 constexpr double kCovered = 60;            // the cost of words over a body
 constexpr double kOnOutline = 8;           // of each unit of a body's outline under words of a film
+constexpr double kOnTrail = 0.4;           // of each unit of a trail under words
+constexpr double kFresh = 0.15;            // s: of a trail that words keep off
 constexpr double kNameCovered = 6;         // as against the cost of other words over something
 
 constexpr std::uint8_t kPlate = 150;  // how much of what lies under the words of a film is covered
@@ -241,16 +243,21 @@ void Notes::avoid_joints() {
   }
 }
 
-// the arrows that bodies have by themselves
+// the arrows and trails that bodies have by themselves
 void Notes::avoid_own_arrows() {
   if (!how_.look) return;
   const Look& look = *how_.look;
-  const auto arrow = [&](const Vec3& tail, const Vec3& tip) {
-    if (view_.before(tail) && view_.before(tip)) placing_.avoid(view_.page(tail), view_.page(tip), 4);
+  const auto line = [&](const Vec3& tail, const Vec3& tip, double weight) {
+    if (view_.before(tail) && view_.before(tip)) placing_.avoid(view_.page(tail), view_.page(tip), weight);
   };
-  for (std::size_t i = 0; i < look.bodies.size() && i < now_.bodies.size(); ++i)
-    if (const sim::Snapshot::Body& body = now_.bodies[i]; look.bodies[i].velocity)
-      arrow(body.position, body.position + look.velocity_scale * body.velocity);
+  const auto arrow = [&](const Vec3& tail, const Vec3& tip) { line(tail, tip, 4); };
+  for (std::size_t i = 0; i < look.bodies.size() && i < now_.bodies.size(); ++i) {
+    const sim::Snapshot::Body& body = now_.bodies[i];
+    if (look.bodies[i].velocity) arrow(body.position, body.position + look.velocity_scale * body.velocity);
+    // and the fresh end of a trail
+    if (look.bodies[i].trail > 0 && how_.survey)
+      line(body.position, body.position - std::min(kFresh, look.bodies[i].trail) * body.velocity, kOnTrail);
+  }
   const bool any =
       std::any_of(look.bodies.begin(), look.bodies.end(), [](const auto& b) { return b.contact; });
   if (!any) return;

@@ -24,13 +24,14 @@ class Notes {
   void length(int index, const Marks::Length& length);
   void point(int index, const Marks::Point& point);
   void label(int index, const Marks::Label& label);
-  void name(int index, const Marks::Name& name, bool many);
+  void name(int index, const Marks::Name& name, const Marks& marks);
   void cone(int index, const Marks::Cone& cone, const Scales& scales);
   void axes();
   void finish();
 
  private:
   void mark_tails();
+  std::vector<Point> steady_arrows(int body, const Marks& marks) const;
   struct Word {
     WordKey key;
     Formula set;

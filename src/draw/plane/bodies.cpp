@@ -6,7 +6,9 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kLeast = 1.6;  // radius of what is too small to see
+constexpr double kLeast = 1.6;      // radius of what is too small to see
+constexpr double kSmallBox = 10;    // page units: half the width of a box under which its outline is thinner
+constexpr double kSmallFill = 0.3;  // of the way from its fill to its outline, of the smallest
 
 /// How a ball that turns stands: a radius, as the axes of a box are.
 void mark_turns(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
@@ -46,13 +48,15 @@ void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, 
     box.center = center;
     box.x_axis = {std::cos(body.angle), -std::sin(body.angle)};
     box.half = half.cwiseMax(0.8 * weight);
-    box.line = std::min(kOutline * weight, 0.35 * shorter);
+    // of small ones the fill is seen, not the outline
+    const double size = std::min(shorter / (kSmallBox * weight), 1.0);
+    box.line = std::min(kOutline * weight, 0.28 * shorter * size);
     if (stage.look.axes && !stage.cast.bodies[i].fixed && shorter > 18 * weight) {
       box.axis = std::min(0.56 * shorter, 44 * weight);
       box.axis_line = std::min(kAxisLine * weight, 0.16 * box.axis);
     }
-    box.fill = stage.paints[i].fill;
     box.outline = stage.paints[i].outline;
+    box.fill = mix(stage.paints[i].fill, box.outline, kSmallFill * (1 - size));
     box.axis_color = stage.paints[i].axis;
     list.of({Subject::What::body, i});
     list.add(box);

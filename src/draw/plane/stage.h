@@ -77,6 +77,9 @@ struct Arrow {
 /// An arrow, if it is large enough to be seen. One that begins in the window ends there.
 void offer(const Point& tail, Point tip, const Rect& window, double weight, std::vector<Arrow>& arrows);
 
+/// An arrow at a window's edge to what lies outside it, `away` from its middle.
+Arrow at_edge(const Rect& window, const Point& away, double weight);
+
 /// Halos of all below all arrows, but not over small discs with an outline that are in
 /// the list.
 void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Color color, List& list);

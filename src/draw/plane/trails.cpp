@@ -132,6 +132,15 @@ void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now,
   list.of({});
 }
 
+Arrow at_edge(const Rect& window, const Point& away, double weight) {
+  // on the line to it from the window's middle
+  const Point half = Point(window.width, window.height) / 2,
+              room = half - Point::Constant(kGoneEdge * weight);
+  const double part = (room.array() / away.cwiseAbs().array().max(1e-9)).minCoeff();
+  const Point tip = Point(window.x, window.y) + half + part * away;
+  return {tip - kGone * weight * away.normalized(), tip};
+}
+
 void draw_gone(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   const Rect& w = view.window;
   const double weight = stage.layout.weight;
@@ -146,11 +155,7 @@ void draw_gone(const Stage& stage, const View& view, const sim::Snapshot& now, L
     const Point at = view.page(now.bodies[i].position), away = at - middle;
     const double out = (away.cwiseAbs() - half).maxCoeff();
     if (!at.allFinite() || !(out > std::max(view.scale * reach, stage.dots[i]))) continue;
-    // on the line to it from the picture's middle
-    const Point room = half - Point::Constant(kGoneEdge * weight);
-    const double part = (room.array() / away.cwiseAbs().array().max(1e-9)).minCoeff();
-    const Point tip = middle + part * away;
-    arrows.push_back({tip - kGone * weight * away.normalized(), tip});
+    arrows.push_back(at_edge(w, away, weight));
     inks.push_back(stage.paints[i].outline);
   }
   draw_arrows(arrows, inks, weight, stage.colours.room, list);

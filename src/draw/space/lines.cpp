@@ -11,10 +11,11 @@ namespace {
 
 using sim::Vec3;
 
-constexpr int kTrailPieces = 120;  // of a trail
-constexpr double kCusp = 0.9;      // cosine of a turn that is kept
-constexpr double kBent = 0.8;      // page units: see draw/plane/trails.cpp
-constexpr double kPathLine = 3.6;  // page units at the weight 1
+constexpr int kTrailPieces = 120;    // of a trail
+constexpr double kCusp = 0.9;        // cosine of a turn that is kept
+constexpr double kBent = 0.8;        // page units: see draw/plane/trails.cpp
+constexpr double kPathLine = 3.6;    // page units at the weight 1
+constexpr double kPassedEye = 1e-2;  // depth over the target's
 constexpr double kStep = 14, kWayDot = 2.1;
 // page units: of a line from a body to the ground, and of the cross there
 constexpr double kDropLine = 1.6, kDropDash = 7, kDropGap = 5, kDropFoot = 9;
@@ -224,6 +225,40 @@ void draw_space_arrows(SpaceFrame& s) {
     arrow(body.position, body.position + stage.look.velocity_scale * body.velocity);
   }
   draw_arrows(arrows, weight, stage.colours.room, stage.colours.velocity, s.list);
+}
+
+void draw_space_gone(SpaceFrame& s) {
+  const SpaceStage& stage = s.stage;
+  const Rect& w = s.lens.window;
+  const Point half = Point(w.width, w.height) / 2, middle = Point(w.x, w.y) + half;
+  std::vector<double> reach(s.now.bodies.size(), 0);
+  for (const Piece& piece : stage.pieces)
+    reach[std::size_t(piece.body)] = std::max(reach[std::size_t(piece.body)], piece.reach);
+  std::vector<Arrow> arrows;
+  std::vector<Color> inks;
+  for (std::size_t i = 0; i < stage.look.bodies.size() && i < s.now.bodies.size(); ++i) {
+    if (!(stage.look.bodies[i].trail > 0) || stage.cast.bodies[i].fixed) continue;
+    const Vec3& place = s.now.bodies[i].position;
+    if (!place.allFinite()) continue;
+    const double depth = s.lens.depth(place);
+    Point away;
+    if (depth > kPassedEye) {
+      away = s.lens.page(place) - middle;
+      const double wide = std::max(s.lens.scale_at(place) * reach[i], stage.dots[i]);
+      if (!((away.cwiseAbs() - half).maxCoeff() > wide)) continue;
+    } else {
+      // beside or behind the eye: to the side on which it is
+      const Vec3 off = place - s.lens.eye();
+      away = Point(off.dot(s.lens.right), -off.dot(s.lens.up)) * s.lens.scale;
+      if (!(away.norm() > 0)) continue;
+    }
+    arrows.push_back(at_edge(w, away, stage.layout.weight));
+    arrows.back().bare = 0;
+    inks.push_back(paint(stage.own[i], stage.look.theme).outline);
+  }
+  // a page that looks from elsewhere has none
+  s.list.of(kSeenLines);
+  draw_arrows(arrows, inks, stage.layout.weight, stage.colours.room, s.list);
 }
 
 void draw_space_hands(SpaceFrame& s) {

@@ -312,6 +312,7 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
     trace_edges(scenery);
     draw_room_front(stage, lens, picture.moving);
     draw_space_arrows(scenery);
+    draw_space_gone(scenery);
     trace_paths(scenery, paths, true);
     draw_space_hands(scenery);
     picture.moving.of({});

@@ -153,6 +153,8 @@ void trace_drops(SpaceFrame& scenery);
 void add_shadows(SpaceFrame& scenery);
 /// The lines that were traced, the farthest first, and arrows over them.
 void draw_space_arrows(SpaceFrame& scenery);
+/// Arrows at the window's edge to bodies with trails that have left it.
+void draw_space_gone(SpaceFrame& scenery);
 void draw_space_hands(SpaceFrame& scenery);
 
 /// The parts of a line through `way` that are seen, as lines of this width and colour.

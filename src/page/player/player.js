@@ -7,6 +7,7 @@ import { Reel } from "./reel.js";
 import { NOTHING, Values, clock, fixed } from "./values.js";
 
 const $ = (/** @type {string} */ id) => /** @type {any} */ (document.getElementById(id));
+const CLOSING = "closing: how fast the points that touch come together, along the normal of the contact";
 const TICK = 4, // px: a click so near an event's tick is meant for it,
   TAP = 8; // and a finger that goes no farther taps
 const TOLD = 200; // ms between two tables while the film plays
@@ -209,6 +210,7 @@ class Player {
         button = document.createElement("button");
       button.type = "button";
       button.textContent = `${event.time.toFixed(3)} s  ${event.text}`;
+      if (event.text.includes("closing")) button.title = CLOSING;
       button.addEventListener("click", () => {
         this.pause();
         this.show(this.frame_of(event));
