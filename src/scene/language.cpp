@@ -130,8 +130,8 @@ std::vector<Key> rows() {
        .example = "\"direct\""},
       {.path = "physics.impacts", .form = choice, .fallback = "\"simultaneous\"",
        .choices = {"simultaneous", "sequential"},
-       .doc = "Impacts at the same instant: solved together, or pair after pair, as Newton's cradle needs. With the iterative "
-              "solver always pair after pair.",
+       .doc = "Impacts at the same instant: solved together, or pair after pair, as Newton's cradle needs. The iterative "
+              "solver of the plane takes them pair after pair whatever is named.",
        .example = "\"sequential\""},
       {.path = "physics.rotation", .form = boolean, .fallback = "true",
        .doc = "Whether bodies turn. `false`: forces move bodies but never turn them.", .example = "false"},

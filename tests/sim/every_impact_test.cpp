@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <tuple>
 
@@ -213,6 +214,81 @@ TEST(EveryImpact, OfAGasOfBallsKeepsItsEnergy) {
     expect_elastic<2>({5, 4}, 0.05, 1, 40, rate, 1e-9);
     expect_elastic<3>({3, 3, 3}, 0.05, 1, 40, rate, 1e-6);
   }
+}
+
+// A row of equal balls of e = 1 that touch hands the blow on, pair after pair, though it is n impacts in one
+// instant; to the left of the origin their gaps round to both signs.
+template <int D>
+void expect_cradle(int balls, int rate) {
+  SCOPED_TRACE(std::to_string(D) + "D, " + std::to_string(balls) + " at " + std::to_string(rate));
+  World<D> world = walled<D>(400, 0, Solver::iterative, rate);
+  world.model.impacts = Impacts::sequential;
+  for (Wall<D>& wall : world.model.walls) wall.point -= 200 * Vec<D>::Ones();
+  const auto at = [](double x) { return Vec<D>(x * Vec<D>::Unit(0)); };
+  add_particle<D>(world, at(-81), at(2), 1, 1, 0.2);
+  for (int i = 0; i < balls; ++i) add_particle<D>(world, at(0.4 * i - 80), at(0), 1, 1, 0.2);
+  const State<D> now = stepped(world, rate / 2);
+  EXPECT_NEAR(now.v.back()[0], 2, 1e-12);
+  for (int i = 0; i < balls; ++i) EXPECT_NEAR(now.v[std::size_t(i)].norm(), 0, 1e-12) << i;
+}
+
+TEST(EveryImpact, OfACradleOfHundredsHandsTheBlowOn) {
+  for (const int rate : {60, 600}) {
+    for (const int balls : {5, 300}) {
+      expect_cradle<2>(balls, rate);
+      expect_cradle<3>(balls, rate);
+    }
+  }
+}
+
+// A heavy ball drives a light one against a wall, time and again, all in a few steps: with masses M and m
+// each impact of theirs turns (sqrt(M) V, sqrt(m) v) by twice atan(sqrt(m / M)). Counted as Galperin counts
+// the digits of pi (2003).
+template <int D>
+void expect_digits_of_pi(double ratio, int rate) {
+  SCOPED_TRACE(std::to_string(D) + "D, " + std::to_string(ratio) + " at " + std::to_string(rate));
+  World<D> world = walled<D>(20, 0, Solver::iterative, rate);
+  const auto at = [](double x) { return Vec<D>(10 * Vec<D>::Ones() + (x - 10) * Vec<D>::Unit(0)); };
+  add_particle<D>(world, at(1), at(0) - at(0), 1, 1, 0.2);
+  add_particle<D>(world, at(3), at(-2) - at(0), ratio, 1, 0.2);
+  double V = -2, v = 0;
+  for (;;) {
+    if (v > V) {
+      const double all = ratio + 1, before = V;
+      V = ((ratio - 1) * V + 2 * v) / all, v = ((1 - ratio) * v + 2 * ratio * before) / all;
+    } else if (v < 0) {
+      v = -v;
+    } else {
+      break;
+    }
+  }
+  const State<D> now = stepped(world, 3 * rate);
+  EXPECT_NEAR(now.v[1][0], V, 1e-7);
+  EXPECT_NEAR(std::fabs(now.v[0][0]), v, 1e-7 * std::sqrt(ratio));  // it may meet the wall once more
+}
+
+TEST(EveryImpact, OfTwoThatCountTheDigitsOfPi) {
+  for (const int rate : {60, 600}) {
+    for (const double ratio : {1e2, 1e4, 1e6}) {
+      expect_digits_of_pi<2>(ratio, rate);
+      expect_digits_of_pi<3>(ratio, rate);
+    }
+  }
+}
+
+// Impacts that would not end are told: a ball of 10^12 times the mass meets another 3,141,592 times.
+TEST(EveryImpact, ThatDoNotEndAreTold) {
+  World<2> world = walled<2>(20, 0, Solver::iterative, 60);
+  add_particle<2>(world, {1, 10}, {0, 0}, 1, 1, 0.2),
+      add_particle<2>(world, {1.45, 10}, {-2, 0}, 1e12, 1, 0.2);
+  State<2> state = world.state;
+  Stepper<2> stepper(world.model);
+  stepper.begin(state);
+  std::optional<Trouble> trouble;
+  for (int i = 0; i < 60 && !trouble; ++i) trouble = stepper.step(state);
+  ASSERT_TRUE(trouble);
+  EXPECT_EQ(trouble->quantity, "number of impacts");
+  EXPECT_NE(trouble->likely.find("raise physics.rate"), std::string::npos);
 }
 
 // many times through the room in a step

@@ -62,7 +62,9 @@ double closing_time(double from, double guess, double h, double slow, At&& at) {
 /// touch; `slow`: -v; `left`: s until the substep ends.
 inline double target_after_impacts(double target, const GapInTime& gap, double together, double slow,
                                    double left, double h) {
-  if (gap.width <= together) return target;
+  // what closes with an impact just after the substep is the next one's
+  const bool later = gap.speed < slow && gap.width > -left * gap.speed;
+  if (gap.width <= together && !later) return target;
   // an approach this fast would have been an impact if the two could meet: they pass each other
   const bool passes = gap.speed < slow || left <= kInTime * h;
   return passes ? -1e9 : target - gap.width / left;

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "sim/motion/free_motion.h"
+#include "sim/solve/iterate/endless_impacts.h"
 #include "sim/solve/iterate/substeps.h"
 
 namespace obscura::sim {
@@ -193,7 +194,9 @@ void PlaneIterative::warm_start(StepPart<D> part) {
 }
 
 void PlaneIterative::resolve_impacts(StepPart<D> part) {
-  impacts_.run(fast_, pairs_.all(), batches_, poses_, old_, dv_, moving_, constants_, joints_);
+  const int endless =
+      impacts_.run(fast_, pairs_.all(), batches_, poses_, old_, dv_, moving_, constants_, joints_);
+  if (endless >= 0) end_of_impacts(model_.bodies[endless].name, part.t, part.h);
   if (!part.state.work.empty()) part.state.work[0] += impacts_.drive_work();
   constants_.least = impacts_.least();
 }

@@ -13,6 +13,7 @@
 #include <tuple>
 
 #include "sim/solve/iterate/closing_time.h"
+#include "sim/solve/iterate/endless_impacts.h"
 #include "sim/solve/iterate/plane_pair_impact.h"
 
 namespace obscura::sim::plane {
@@ -242,17 +243,17 @@ void Impacts::leave_to_iterations(const std::vector<Pair>& pairs, std::vector<Co
   for (const Impact& impact : impacts_) waiting_[impact.pair] = 0;
 }
 
-void Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
-                  const std::vector<Pose>& poses, const std::vector<Motion>& old,
-                  const std::vector<Motion>& dv, std::vector<Motion>& v, const StepConstants& pace,
-                  JointSolver<2>& joints) {
+int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
+                 const std::vector<Pose>& poses, const std::vector<Motion>& old,
+                 const std::vector<Motion>& dv, std::vector<Motion>& v, const StepConstants& pace,
+                 JointSolver<2>& joints) {
   for (const int body : bodies_) when_[body] = first_[body] = -1, rounds_[body] = 0;
   for (const Impact& impact : impacts_) {
     if (impact.pair < int(impacts_of_.size())) impacts_of_[impact.pair] = 0;
   }
   bodies_.clear(), impacts_.clear(), due_.clear(), predicted_.clear(), passing_.clear();
   rows_.clear(), groups_.clear(), queue_.clear(), drive_work_ = 0;
-  if (found.empty()) return;
+  if (found.empty()) return -1;
   std::copy(old.begin(), old.end(), now_.begin());
   known_.assign(batches.size(), -1);
 
@@ -260,9 +261,8 @@ void Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::ve
   for (const int lane : found) look_at(batches[lane / kLanes].pair[lane % kLanes]);
   // which lane a pair has hangs on the steps before; the order of pairs does not
   std::sort(queue_.begin(), queue_.end());
-  const std::size_t most = 40 * found.size() + 100;
   double now = 0;
-  for (std::size_t at = 0; impacts_.size() < most;) {
+  for (std::size_t at = 0;;) {
     Impact impact;
     if (at < queue_.size()) {
       // all that may have changed in this instant
@@ -283,6 +283,10 @@ void Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::ve
       break;
     }
     const Pair& pair = pairs[impact.pair];
+    if (impacts_.size() == kMostImpacts) {
+      for (const int i : queue_) waiting_[i] = 0;
+      return pair.a;
+    }
     resolve(impact, batches, step, joints);
     impacts_.push_back(impact), impacts_of_[impact.pair] = 1;
     if (at == queue_.size()) queue_.clear(), at = 0;
@@ -294,13 +298,13 @@ void Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::ve
       });
     }
   }
-  for (const int i : queue_) waiting_[i] = 0;
 
   for (const int body : bodies_) {
     const Motion& given = dv_impacts_[body];
     v[body].x += given.x, v[body].y += given.y, v[body].w += given.w;
   }
   leave_to_iterations(pairs, batches, poses, dv, pace);
+  return -1;
 }
 
 void Impacts::record(const std::vector<Pair>& pairs, const std::vector<Contact<2>>& contacts,

@@ -26,10 +26,11 @@ class Impacts {
 
   /// Resolves the impacts of the lanes in `found` and all that follow from them. `old`: velocities at the
   /// start; dv: what the substep adds to them without contacts. Adds the change by impacts to v, marks lanes
-  /// as struck, and sets least() for them.
-  void run(const LaneList& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
-           const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
-           std::vector<Motion>& v, const StepConstants& pace, JointSolver<2>& joints);
+  /// as struck, and sets least() for them. Returns a body whose impacts do not end
+  /// (sim/solve/iterate/endless_impacts.h), or -1.
+  int run(const LaneList& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
+          const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
+          std::vector<Motion>& v, const StepConstants& pace, JointSolver<2>& joints);
 
   /// The work of kinematic bodies and belts by the impacts of the last run, J.
   double drive_work() const { return drive_work_; }

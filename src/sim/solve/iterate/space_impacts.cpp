@@ -13,6 +13,7 @@
 
 #include "sim/solve/cone/one_contact.h"
 #include "sim/solve/iterate/closing_time.h"
+#include "sim/solve/iterate/endless_impacts.h"
 #include "sim/solve/iterate/space.h"
 
 namespace obscura::sim {
@@ -25,19 +26,23 @@ constexpr int kPatience = 40;          // systems: what takes more is left to th
 constexpr double kImpactGain = 1e-13;  // of the energy that moves along the rows: rounding
 constexpr int kShares = 24;            // halvings for the share of e that does so
 constexpr double kLockedPush = 1e-9;   // of what a push moves without joints
-constexpr int kTurns = 40;             // impacts, of those that there are at first
 
 }  // namespace
 
-// what meets with a gap at a time, through gaps that are closed; false where that is not for here
+// what meets with a gap at a time, through gaps that are closed: those of its pair alone, if pairs are struck
+// one after another; false where that is not for here
 bool SpaceIterative::gather_impact(int first, double t, double h) {
   meets_.assign(1, first);
+  const ContactKey pair = touches_[first].key;
+  const bool alone = model_.impacts == Impacts::sequential;
   bool few = true;
   for (std::size_t k = 0; few && k < meets_.size(); ++k) {
     for (const int side : {touches_[meets_[k]].a, touches_[meets_[k]].b}) {
       each_tied(side, [&](int body) {
         for (const int other : around_.of(body)) {
           if (!few) return;
+          const ContactKey& key = touches_[other].key;
+          if (alone && (key.a != pair.a || key.b != pair.b)) continue;
           if (std::find(meets_.begin(), meets_.end(), other) != meets_.end()) continue;
           const double together = kTogether * bounding_radius_[body];
           if (reach_[other].least(t) > together || instant(other, t, h).now.value > together) continue;
@@ -164,8 +169,8 @@ bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work)
   for (const int i : meets_) {
     for (const int side : {touches_[i].a, touches_[i].b}) {
       each_tied(side, [&](int body) {
-        if (when_[body] == t) return;
-        flown_[body] = flown(body, t, h), when_[body] = t, courses_[body] = {};
+        if (when_[body] != t) flown_[body] = flown(body, t, h), when_[body] = t;
+        courses_[body] = {};  // also of a second impact in this instant
       });
     }
   }
@@ -257,10 +262,12 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
   });
 
   // in the order of time, then of gaps
-  for (std::size_t left = kTurns * due_.size() + 100; left > 0 && !due_.empty(); --left) {
+  std::size_t looked_at = 0;
+  while (!due_.empty()) {
     const ImpactQueue::Due due = due_.pop();
     if (due.rounds != rounds(due.number)) continue;
     if (crowded_[touches_[due.number].a] || crowded_[touches_[due.number].b]) continue;
+    if (++looked_at > kMostImpacts) end_of_impacts(model_.bodies[touches_[due.number].a].name, step.t, h);
     if (!has_nearest_features(due, h)) continue;
     if (!gather_impact(due.number, due.when, h)) {
       // so many touch there that what meets them later is left to the iterations, too
