@@ -87,6 +87,45 @@ TEST_F(Golden, AStateThatDoesNotShowFailsAllTheSame) {
   EXPECT_THAT(run.out, HasSubstr("states part at step 0 (t = 0 s): body ball, velocity"));
 }
 
+// A mass that nothing feels is in neither: it is told all the same.
+TEST_F(Golden, AKeyThatShowsInNeitherStateNorPictureIsTold) {
+  ASSERT_EQ(golden("--update").exit, 0);
+  ASSERT_EQ(obscura("render scene.toml --at 0.5 --size 160x90 -o a.png").exit, 0);
+  change("[1, 1]\ncolor", "[1, 1]\nmass = 5\ncolor");
+  const Outcome run = golden();
+  EXPECT_EQ(run.exit, 0) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("state and picture are the same; other scene (scene.toml): ball.mass is "
+                                 "left out and 5"));
+  ASSERT_EQ(obscura("render scene.toml --at 0.5 --size 160x90 -o b.png").exit, 0);
+  const Outcome compared = obscura("compare a.png b.png");
+  EXPECT_EQ(compared.exit, 0) << compared.out;
+  EXPECT_THAT(compared.out, HasSubstr("states and pictures are the same"));
+  EXPECT_THAT(compared.out, testing::Not(HasSubstr("only the drawing differs")));
+  scene(kScene);
+  EXPECT_THAT(golden().out, testing::Not(HasSubstr("other scene")));
+}
+
+TEST_F(Golden, ARecordTellsOfAnotherTextOfTheScene) {
+  change("size = [160, 90]", "size = [160, 90]\nkeep = \"hash\"");
+  ASSERT_EQ(golden("--update").exit, 0);
+  change("[1, 1]\ncolor", "[1, 1]\nmass = 5\ncolor");
+  const Outcome run = golden();
+  EXPECT_EQ(run.exit, 0) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("state and picture are the same; the text of the scene is another one"));
+}
+
+// A plot spans the run: at 0 s both stand alike, and the plot of what follows does not.
+TEST_F(Golden, APlotOfARunThatDiffersLaterIsNoDrawingThatDiffers) {
+  change("[golden]", "[[film.plot]]\nquantity = \"energy\"\n[golden]");
+  ASSERT_EQ(obscura("render scene.toml --at 0 --size 160x90 -o a.png").exit, 0);
+  ASSERT_EQ(obscura("render scene.toml --at 0 --size 160x90 -o b.png --set ball.elasticity=0.3").exit, 0);
+  const Outcome run = obscura("compare a.png b.png");
+  EXPECT_EQ(run.exit, 1) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("states are the same at t = 0 s, but not through the run"));
+  EXPECT_THAT(run.out, HasSubstr("states part at step"));
+  EXPECT_THAT(run.out, testing::Not(HasSubstr("only the drawing differs")));
+}
+
 TEST_F(Golden, WhatIsLetPassNeedsAReasonAndPassesWithIt) {
   ASSERT_EQ(golden("--update").exit, 0);
   change("size = [160, 90]", "size = [160, 90]\nstates = false");

@@ -158,6 +158,10 @@ TEST_F(HandOver, AGifIsUnderTheSizeThatOneNames) {
   EXPECT_LE(fs::file_size(path("f.gif")), limit);
   EXPECT_GT(fs::file_size(path("f.gif")), limit / 3) << "smaller than it needs to be";
   EXPECT_FALSE(fs::exists(path("f.gif.sizing.gif")));
+  // its trials are nobody's concern
+  EXPECT_EQ(std::count(made.out.begin(), made.out.end(), '\n'), 1) << made.out;
+  EXPECT_THAT(made.out, testing::StartsWith("f.gif: "));
+  EXPECT_THAT(made.err, testing::Not(HasSubstr("sizing")));
   // what fits is left as it is
   ASSERT_EQ(obscura("render scene.toml -o g.gif --under 1GB" + how).exit, 0);
   EXPECT_EQ(fs::file_size(path("g.gif")), whole);

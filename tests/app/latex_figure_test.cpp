@@ -84,9 +84,9 @@ std::multimap<std::string, Written> words_of(const std::string& page) {
 
 TEST_F(LatexFigure, LinesAreAPdfWithoutWordsAndWordsAreLatex) {
   ASSERT_EQ(obscura("figure scene.toml -o a.tex").exit, 0);
-  EXPECT_EQ(shell("pdftotext a.pdf - | tr -d '\\f\\n '").out, "");
+  EXPECT_EQ(shell("pdftotext a-lines.pdf - | tr -d '\\f\\n '").out, "");
   const std::string words = contents(path("a.tex"));
-  for (const char* each : {"\\includegraphics[width=238.11\\unitlength]{\\obscurafolder a.pdf}",
+  for (const char* each : {"\\includegraphics[width=238.11\\unitlength]{\\obscurafolder a-lines.pdf}",
                            "$\\obscurabold{v}_{\\mathrm{center}}$", "$P^{\\prime}$", "\\frac{1}{2}",
                            "$x\\ /\\ \\obscuratext{m}$", "\\obscuratext{m/s}"})
     EXPECT_THAT(words, HasSubstr(each));
@@ -94,10 +94,10 @@ TEST_F(LatexFigure, LinesAreAPdfWithoutWordsAndWordsAreLatex) {
 
 TEST_F(LatexFigure, IsTheSameBytesWheneverItIsMade) {
   ASSERT_EQ(obscura("figure scene.toml -o a.tex").exit, 0);
-  const std::string words = contents(path("a.tex")), lines = contents(path("a.pdf"));
+  const std::string words = contents(path("a.tex")), lines = contents(path("a-lines.pdf"));
   ASSERT_EQ(obscura("figure scene.toml -o a.tex").exit, 0);
   EXPECT_EQ(contents(path("a.tex")), words);
-  EXPECT_EQ(contents(path("a.pdf")), lines);
+  EXPECT_EQ(contents(path("a-lines.pdf")), lines);
 }
 
 /// In the document's fonts, found beside the .tex wherever that lies.

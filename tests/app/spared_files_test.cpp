@@ -58,6 +58,38 @@ TEST_F(SparedFiles, NoOverwriteKeepsEachFrameAndTheCaptionsAndThePoster) {
   refuses("render said.toml -o said.mp4 --no-overwrite", 4, "said.vtt: is there already");
 }
 
+// A sequence that takes the place of a longer one takes it whole; what others wrote there stays.
+TEST_F(SparedFiles, AShorterSequenceLeavesNoFramesOfTheLongerOne) {
+  ASSERT_EQ(obscura("render box.toml -o 'f/{frame}.png' --set duration=0.4").exit, 0);
+  ASSERT_TRUE(std::filesystem::exists(path("f/7.png")));
+  const Outcome shorter = obscura("render box.toml -o 'f/{frame}.png' --set duration=0.2");
+  EXPECT_EQ(shorter.exit, 0);
+  EXPECT_THAT(shorter.err, HasSubstr("f/4.png to f/7.png are removed"));
+  EXPECT_FALSE(std::filesystem::exists(path("f/4.png")));
+  EXPECT_FALSE(std::filesystem::exists(path("f/7.png")));
+  EXPECT_TRUE(std::filesystem::exists(path("f/3.png")));
+  // a part of the film does not touch the rest of it
+  ASSERT_EQ(obscura("render box.toml -o 'f/{frame}.png' --set duration=0.2 --frames 0,1").exit, 0);
+  EXPECT_TRUE(std::filesystem::exists(path("f/3.png")));
+  // nor does a film what is no frame, or of another scene
+  shell("touch f/2.png && cp box.toml disc.toml");
+  ASSERT_EQ(obscura("render box.toml -o 'f/{frame}.png'").exit, 0);
+  EXPECT_TRUE(std::filesystem::exists(path("f/2.png")));
+  ASSERT_EQ(obscura("render box.toml -o 'f/{frame}.png' --set duration=0.2").exit, 0);
+  ASSERT_EQ(obscura("render disc.toml -o 'f/{frame}.png'").exit, 0);
+  EXPECT_TRUE(std::filesystem::exists(path("f/2.png")));
+}
+
+TEST_F(SparedFiles, AFigureForLatexLeavesTheFiguresPdf) {
+  ASSERT_EQ(obscura("figure box.toml -o box.svg").exit, 0);
+  shell("echo mine > box.pdf");
+  const Outcome made = obscura("figure box.toml -o box.tex");
+  if (made.exit == 2) GTEST_SKIP() << made.err;  // built without Cairo
+  EXPECT_EQ(made.exit, 0);
+  EXPECT_EQ(contents(path("box.pdf")), "mine\n");
+  EXPECT_TRUE(std::filesystem::exists(path("box-lines.pdf")));
+}
+
 TEST_F(SparedFiles, AFolderOfPartsKeepsWhatIsNotItsOwn) {
   shell("mkdir box.mp4.parts && touch box.mp4.parts/thesis.txt");
   EXPECT_EQ(obscura("render box.toml -o box.mp4").exit, 0);

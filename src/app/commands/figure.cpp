@@ -70,9 +70,10 @@ void check_ending(const std::string& out) {
         "-o {}: this obscura was built without Cairo and cannot write PDF; use .svg or .png", out));
 }
 
-// the PDF beside LaTeX's words
+// the PDF beside LaTeX's words: not the figure's own, which may lie there too
 std::string lines_of(const std::string& out) {
-  return std::filesystem::path(out).replace_extension(".pdf").string();
+  const std::filesystem::path path(out);
+  return (path.parent_path() / (path.stem().string() + "-lines.pdf")).string();
 }
 
 void write(const std::string& out, const std::vector<std::uint8_t>& bytes) {
@@ -141,10 +142,10 @@ OBSCURA_COMMAND(30, figure) {
   auto flags = std::make_shared<FigureFlags>();
   add_scene(command, flags->scene);
   command
-      .option("-o,--output", flags->out,
-              "The output: .svg or .pdf (vectors, with text as text), .png, or .tex (a .pdf without words, "
-              "and its words as "
-              "LaTeX over it) [render_out/SCENE.svg]")
+      .option(
+          "-o,--output", flags->out,
+          "The output: .svg or .pdf (vectors, with text as text), .png, or .tex (its words for LaTeX, over "
+          "the lines in NAME-lines.pdf) [render_out/SCENE.svg]")
       .type("OUT");
   command
       .option("--at", flags->at,

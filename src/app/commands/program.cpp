@@ -56,6 +56,25 @@ void know_command(const CLI::App& program, int argc, const char* const* argv) {
                   meant.empty() ? fmt::format("; the commands are {}", fmt::join(names, ", ")) : meant));
 }
 
+// of an option that there is not: its name, and the one that was probably meant; else CLI11's words
+std::string usage_text(const CLI::App& program, const CLI::ParseError& error) {
+  const auto parsed = program.get_subcommands();
+  const CLI::App& command = parsed.empty() ? program : *parsed.front();
+  const std::string name = parsed.empty() ? "" : command.get_name() + " ";
+  std::string text = error.what();
+  for (const std::string& word : program.remaining(true)) {
+    if (word.size() < 2 || word[0] != '-') continue;
+    const std::string option = word.substr(0, word.find('='));
+    std::vector<std::string> names;
+    for (const CLI::Option* each : command.get_options())
+      for (const std::string& known : each->get_lnames()) names.push_back("--" + known);
+    text = fmt::format("{} no option {}{}", parsed.empty() ? "there is" : command.get_name() + " has",
+                       scene::one_line(option), scene::did_you_mean(option, {names.begin(), names.end()}));
+    break;
+  }
+  return fmt::format("{}; see obscura {}--help", text, name);
+}
+
 int complain(int code, const std::string& what) {
   say(stderr, "obscura: {}\n", what);
   return code;
@@ -99,9 +118,7 @@ int run(int argc, const char* const* argv) {
   } catch (const CLI::Success& success) {
     return program.exit(success);
   } catch (const CLI::ParseError& error) {
-    const auto parsed = program.get_subcommands();
-    const std::string command = parsed.empty() ? "" : parsed.front()->get_name() + " ";
-    return complain(kUsage, fmt::format("{}; see obscura {}--help", error.what(), command));
+    return complain(kUsage, usage_text(program, error));
   } catch (const UsageError& error) {
     return complain(kUsage, error.what());
   } catch (const scene::Error& error) {

@@ -12,6 +12,7 @@
 #include "app/console/exit.h"
 #include "app/console/memory.h"
 #include "app/console/options.h"
+#include "app/console/progress.h"
 #include "app/console/say.h"
 #include "app/film/estimate.h"
 #include "app/film/film.h"
@@ -108,13 +109,20 @@ int film_under(scene::Scene scene, const Shots& shots, const Output& out, const 
   const Output trial{Output::Form::movie, out.path + ".sizing.gif", true};
   FilmOptions options = flags.film;
   options.anew = options.overwrite = true;
+  options.progress = ProgressKind::none;  // of the GIF, not of its trials
   if (!flags.film.overwrite) require_fresh(out.path);
+  Progress progress(flags.film.progress, out.path, shots.size(), 1 / sim::value(scene.film.fps));
   const double aspect = double(scene.film.width) / scene.film.height;
   double height = scene.film.height;
   for (;;) {
     scene.film.height = std::max(2, int(std::lround(height)));
     scene.film.width = std::max(2, int(std::lround(height * aspect)));
-    if (const int exit = film(scene, shots, trial, options); exit != kDone) return exit;
+    if (const int exit = film(scene, shots, trial, options); exit != kDone) {
+      std::error_code none;
+      std::filesystem::remove(trial.partial(), none), std::filesystem::remove_all(trial.parts(), none);
+      progress.finish(0, "interrupted: nothing was written", false);
+      return exit;
+    }
     const double size = double(std::filesystem::file_size(trial.path));
     if (size <= most) break;
     // bytes grow with edges and with areas
@@ -128,8 +136,10 @@ int film_under(scene::Scene scene, const Shots& shots, const Output& out, const 
   }
   if (std::rename(trial.path.c_str(), out.path.c_str()) != 0)
     throw media::Error(fmt::format("{}: cannot rename into place", out.path));
-  say(stdout, "{}: {}x{}, {}\n", out.path, scene.film.width, scene.film.height,
-      bytes_text(double(std::filesystem::file_size(out.path))));
+  progress.finish(shots.size(),
+                  fmt::format("{}: {}x{}, {}", out.path, scene.film.width, scene.film.height,
+                              bytes_text(double(std::filesystem::file_size(out.path)))),
+                  true);
   return kDone;
 }
 

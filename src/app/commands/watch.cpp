@@ -125,11 +125,24 @@ class Watching {
   PageServer& server_;
 };
 
+// what no saving of the scene can mend: a rate that is none, values that do not fit a scene that is right
+void check_flags(const WatchFlags& flags) {
+  if (flags.fps) parse_fps(*flags.fps);
+  if (flags.sets.empty()) return;
+  try {
+    scene::read(flags.scene, {});
+  } catch (const scene::Error&) {
+    return;  // the page says so, until it is saved anew
+  }
+  scene::read(flags.scene, flags.sets);
+}
+
 int watch(const WatchFlags& flags) {
   if (flags.scene == "-") throw UsageError("watch needs a file that can be saved again");
   std::error_code none;
   if (!fs::exists(flags.scene, none))
     throw media::Error(fmt::format("{}: there is no such file", flags.scene));
+  check_flags(flags);
   PageServer server(flags.port);
   server.show(page::words_page(flags.scene, {"simulating ..."}));
   say(stdout, "http://localhost:{}/ shows {}; Ctrl-C ends\n", server.port(), flags.scene);

@@ -90,7 +90,7 @@ void compare_frames(Frames& a, Frames& b, Comparison& found) {
   }
   if (found.differing.empty()) {
     // differences of their origins, though they look the same
-    const Cause told = first_a && first_b && found.plain.empty() ? cause(first_a, first_b) : Cause{};
+    const Cause told = first_a && first_b && found.plain.empty() ? cause(first_a, first_b, false) : Cause{};
     if (told.kind != Cause::Kind::pixels) found.others = told.lines;
     return;
   }

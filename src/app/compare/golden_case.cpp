@@ -70,7 +70,13 @@ void judge(const scene::Golden& golden, const media::Png& reference, const Pictu
     it.lines.push_back(d.same() && sizes ? "the state is another one, though the picture is the same"
                                          : "the state is another one");
   const bool pixels = sizes && d.beyond <= golden.pixels;
-  if (pixels && state && d.same()) return;
+  if (pixels && state && d.same()) {
+    // another mass of what falls freely shows in neither
+    if (origin && (origin->scene_text != made.origin.scene_text || origin->sets != made.origin.sets))
+      if (const std::string line = other_scene(*origin, made.origin); !line.empty())
+        it.lines.push_back("state and picture are the same; " + line);
+    return;
+  }
 
   // the tolerance
   const bool lenient = (golden.level > 0 || golden.pixels > 0 || !golden.states);
@@ -87,7 +93,7 @@ void judge(const scene::Golden& golden, const media::Png& reference, const Pictu
   }
   it.state = "differs";
   if (origin) {
-    it.cause = cause(origin, made.origin);
+    it.cause = cause(origin, made.origin, !sizes || !d.same());
     it.lines.insert(it.lines.end(), it.cause->lines.begin(), it.cause->lines.end());
   }
 }
@@ -145,6 +151,8 @@ void judge_record(const scene::Golden& golden, const GoldenRecord& record, const
   if (picture && pixel_hash(picture->image) != reference.pixels) picture.reset();
   if (state && pixels) {
     it.state = "same";
+    if (record.scene != record_of({it.time}, {made}).scene)
+      it.lines.push_back("state and picture are the same; the text of the scene is another one");
     try {
       if (!picture) keep_picture(it, made);
     } catch (const media::Error&) {

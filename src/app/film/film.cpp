@@ -67,6 +67,7 @@ class Filming {
   std::function<DrawnSegment(FilmSegment)> hire();
   DrawnSegment print(FilmSegment take, FrameRenderer& darkroom);
   void shoot(Simulation& simulation, Progress& progress);
+  void clear_longer() const;
   int finish(Progress& progress, const Simulation& simulation, std::int64_t wanted);
   std::string cut_part() const {
     return (fs::path(store_->folder()) / ("cut." + media::part_ending(output_.path, spec_))).string();
@@ -367,6 +368,28 @@ int Filming::run() {
   return finish(progress, simulation, wanted);
 }
 
+// A sequence takes the place of an earlier one of this scene, and of the frames that this film has no more.
+void Filming::clear_longer() const {
+  std::int64_t end = Shots::film(scene_.duration, scene_.film.fps, scene_.film.speed).size(), gone = 0;
+  for (std::int64_t i = 0; i < shots_.size(); ++i) end = std::max(end, shots_[i].frame + 1);
+  for (std::int64_t n = end;; ++n, ++gone) {
+    const std::string file = output_.file(n);
+    std::error_code none;
+    if (!fs::is_regular_file(file, none)) break;
+    try {
+      const auto there = origin_in(media::read_png(file).tags);
+      if (!there || !there->shot || there->shot->frame != n) break;
+      if (fs::path(there->scene_file).stem() != fs::path(journal_.origin.scene_file).stem()) break;
+    } catch (const media::Error&) {
+      break;  // someone else's
+    }
+    if (!fs::remove(file, none)) break;
+  }
+  if (gone > 0 && options_.progress != ProgressKind::json)
+    say(stderr, "{}{} removed: of a longer film that lay there\n", output_.file(end),
+        gone == 1 ? " is" : fmt::format(" to {} are", output_.file(end + gone - 1)));
+}
+
 // a film that ended early stands under a name that says so
 int Filming::finish(Progress& progress, const Simulation& simulation, std::int64_t wanted) {
   const bool whole = !interrupted() && !simulation.trouble() && open_;
@@ -384,6 +407,7 @@ int Filming::finish(Progress& progress, const Simulation& simulation, std::int64
     frames = joining.takes > 0 || joining.cut ? join(*store_, output_.path, joining) : 0;
   }
   if (store_ && !options_.shard && (whole || simulation.trouble())) store_->remove();
+  if (output_.form == Output::Form::frames && whole && !options_.shard && options_.overwrite) clear_longer();
   // what was there before it was gone on with is a part of it
   if (movie() && whole && options_.resume && !options_.shard) {
     std::error_code none;

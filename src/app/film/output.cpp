@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/console/exit.h"
+#include "media/codec.h"
 #include "media/error.h"
 
 namespace obscura::app {
@@ -111,6 +112,11 @@ Output output(const std::optional<std::string>& out, const std::string& name, bo
   }
   if (p) throw UsageError(fmt::format("{}: a sequence of pictures ends in .png", path));
   if (still) throw UsageError(fmt::format("{}: a still (--at) ends in .png", path));
+  try {
+    (void)media::container(path);
+  } catch (const media::Error& error) {
+    throw UsageError(error.what());
+  }
   return {Output::Form::movie, path};
 }
 

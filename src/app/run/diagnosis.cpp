@@ -87,25 +87,34 @@ void judge_one_scene(const Origin& a, const Origin& b, Cause& cause) {
 }
 
 // for two scenes: the first difference of their states, if there is one
-void judge_scenes(const Origin& a, const Origin& b, Cause& cause) {
+void judge_scenes(const Origin& a, const Origin& b, bool drawn_apart, Cause& cause) {
   cause.kind = Cause::Kind::scene;
   cause.lines.push_back(scene_line(a, b));
   if (a.shot->time != b.shot->time) return;
-  if (same_states(a, b) && (a.frames == 0 || (a.states && b.states && a.shots == b.shots))) {
-    cause.lines.push_back("states are the same: only the drawing differs");
+  const char* same = drawn_apart ? "states are the same: only the drawing differs"
+                                 : "states and pictures are the same: what differs does not show in them";
+  const bool known = same_states(a, b) && (a.frames == 0 || (a.states && b.states && a.shots == b.shots));
+  // a still may tell of its whole run: by a plot, by what the camera is to hold
+  if (known && !(a.frames == 0 && drawn_apart)) {
+    cause.lines.push_back(same);
     return;
   }
   try {
     // the rest of a movie's film is looked at too
     const scene::Scene left = scene_of(a), right = scene_of(b);
     const Shots shots = shots_of(a, left);
-    const sim::Rational until = shots[shots.size() - 1].time;
+    sim::Rational until = shots[shots.size() - 1].time;
+    if (known && until < left.duration) until = left.duration;
     if (const std::string line = first_difference(a, b); !line.empty()) cause.lines.push_back(line);
     cause.states = parting(left, right, until);
-    if (cause.states)
+    if (cause.states && known)
+      cause.lines.push_back(fmt::format(
+          "states are the same at t = {:g} s, but not through the run, of which plots and views tell; {}",
+          sim::value(a.shot->time), cause.states->text()));
+    else if (cause.states)
       cause.lines.push_back(cause.states->text());
     else if (same_states(a, b))
-      cause.lines.push_back("states are the same: only the drawing differs");
+      cause.lines.push_back(same);
     else
       cause.lines.push_back(
           fmt::format("states differ there, and not when this obscura ({}) simulates both", OBSCURA_VERSION));
@@ -117,6 +126,15 @@ void judge_scenes(const Origin& a, const Origin& b, Cause& cause) {
 }
 
 }  // namespace
+
+std::string other_scene(const Origin& a, const Origin& b) {
+  try {
+    if (scene::differences({a.scene_text, a.sets}, {b.scene_text, b.sets}).empty()) return "";
+  } catch (const scene::Error&) {
+    // said of it as a whole
+  }
+  return scene_line(a, b);
+}
 
 const char* name(Cause::Kind kind) {
   switch (kind) {
@@ -136,7 +154,7 @@ const char* name(Cause::Kind kind) {
   return "";
 }
 
-Cause cause(const std::optional<Origin>& a, const std::optional<Origin>& b) {
+Cause cause(const std::optional<Origin>& a, const std::optional<Origin>& b, bool drawn_apart) {
   Cause cause;
   if (!a || !b) {
     cause.lines.push_back(
@@ -156,7 +174,7 @@ Cause cause(const std::optional<Origin>& a, const std::optional<Origin>& b) {
                               ? fmt::format("other state: {} has other numbers there", shows(*a))
                               : fmt::format("other state: A shows {}, B {}", shows(*a), shows(*b)));
   } else if (a->scene_text != b->scene_text || a->sets != b->sets) {
-    judge_scenes(*a, *b, cause);
+    judge_scenes(*a, *b, drawn_apart, cause);
   } else if (!other_time && !same_states(*a, *b)) {
     judge_one_scene(*a, *b, cause);
   }
