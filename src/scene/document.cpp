@@ -215,11 +215,17 @@ std::string forgotten(std::string_view text, int line, int column) {
 }
 
 std::string slurp(const std::string& file) {
-  std::string text(kMostBytes + 1, '\0');
+  std::string text;
   try {
     Input in(file);
-    in.read(text.data(), std::streamsize(text.size()));
-    text.resize(std::size_t(in.gcount()));
+    // piece by piece: room for the longest would be cleared for each
+    for (std::size_t piece = 1 << 14; text.size() <= kMostBytes; piece = text.size()) {
+      const std::size_t there = text.size();
+      text.resize(std::min(there + piece, kMostBytes + 1));
+      in.read(text.data() + there, std::streamsize(text.size() - there));
+      text.resize(there + std::size_t(in.gcount()));
+      if (text.size() < there + piece) break;
+    }
   } catch (const std::system_error& error) {
     refuse(file, 0, 0, "cannot be read: " + error.code().message());
   }
