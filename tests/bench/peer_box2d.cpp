@@ -1,5 +1,5 @@
 // The crowd filmed by hand with Box2D, OpenGL in OSMesa with 4x multisampling, and a raw pipe into ffmpeg:
-// peer_box2d OUT.mp4 SECONDS.
+// peer_box2d OUT.mp4 SECONDS. With OBSCURA_BOX2D3 it is Box2D 3, else the 2.4 of Debian.
 
 #define GL_GLEXT_PROTOTYPES 1
 #include <GL/osmesa.h>
@@ -22,6 +22,12 @@ struct Vertex {
   std::uint8_t rgba[4];
 };
 
+#ifdef OBSCURA_BOX2D3
+b2Vec2 placed(const b2Transform& pose, float x, float y) { return b2TransformPoint(pose, {x, y}); }
+#else
+b2Vec2 placed(const b2Transform& pose, float x, float y) { return b2Mul(pose, b2Vec2(x, y)); }
+#endif
+
 // Triangles in painter's order, in pixels, y up (so that the rows read back are turned over by the
 // projection).
 class Mesh {
@@ -40,22 +46,22 @@ class Mesh {
     triangle(a, c, d, color);
   }
   void line(b2Vec2 a, b2Vec2 b, float width, Rgb color) {
-    b2Vec2 along = b - a;
-    along.Normalize();
-    const b2Vec2 side = 0.5f * width * b2Vec2(-along.y, along.x);
+    const b2Vec2 along = b - a;
+    const float half = 0.5f * width / std::hypot(along.x, along.y);
+    const b2Vec2 side = {-half * along.y, half * along.x};
     quad(a + side, b + side, b - side, a - side, color);
   }
   void disc(b2Vec2 center, float radius, Rgb color) {
     constexpr int kSides = 24;
     for (int i = 0; i < kSides; ++i) {
       const float a = float(2 * M_PI * i / kSides), b = float(2 * M_PI * (i + 1) / kSides);
-      triangle(center, center + radius * b2Vec2(std::cos(a), std::sin(a)),
-               center + radius * b2Vec2(std::cos(b), std::sin(b)), color);
+      triangle(center, center + b2Vec2{radius * std::cos(a), radius * std::sin(a)},
+               center + b2Vec2{radius * std::cos(b), radius * std::sin(b)}, color);
     }
   }
   void box(const b2Transform& pose, float half_width, float half_height, Rgb color) {
-    quad(b2Mul(pose, b2Vec2(-half_width, -half_height)), b2Mul(pose, b2Vec2(half_width, -half_height)),
-         b2Mul(pose, b2Vec2(half_width, half_height)), b2Mul(pose, b2Vec2(-half_width, half_height)), color);
+    quad(placed(pose, -half_width, -half_height), placed(pose, half_width, -half_height),
+         placed(pose, half_width, half_height), placed(pose, -half_width, half_height), color);
   }
 };
 
@@ -79,22 +85,101 @@ Mesh still_picture() {
   return mesh;
 }
 
-b2Body* add(b2World& world, const Start& s, const b2Shape& shape, float density) {
-  b2BodyDef def;
-  def.type = b2_dynamicBody;
-  def.position.Set(float(s.x), float(s.y));
-  def.linearVelocity.Set(float(s.vx), float(s.vy));
-  def.angularVelocity = float(s.spin);
-  b2Body* body = world.CreateBody(&def);
-  b2FixtureDef fixture;
-  fixture.shape = &shape;
-  fixture.density = density;
-  fixture.friction = 0;
-  fixture.restitution = float(kElasticity);
-  fixture.filter.groupIndex = -1;  // bodies pass through each other
-  body->CreateFixture(&fixture);
-  return body;
-}
+const b2Vec2 kCorners[4] = {{0, 0},
+                            {0, float(kRoomHeight)},
+                            {float(kRoomWidth), float(kRoomHeight)},
+                            {float(kRoomWidth), 0}};  // clockwise: the solid side is outside
+
+// The bodies, which pass through each other, in their room.
+#ifdef OBSCURA_BOX2D3
+
+class Room {
+ public:
+  Room() {
+    b2WorldDef def = b2DefaultWorldDef();
+    def.gravity = {0, float(kGravity)};
+    world_ = b2CreateWorld(&def);
+    const b2BodyDef ground = b2DefaultBodyDef();
+    b2ChainDef walls = b2DefaultChainDef();
+    walls.points = kCorners;
+    walls.count = 4;
+    walls.isLoop = true;
+    b2CreateChain(b2CreateBody(world_, &ground), &walls);
+    shape_ = b2DefaultShapeDef();
+    shape_.material.friction = 0;
+    shape_.material.restitution = float(kElasticity);
+    shape_.filter.groupIndex = -1;
+    const b2Circle circle = {{0, 0}, float(kBallRadius)};
+    for (const Start& s : balls()) b2CreateCircleShape(balls_.emplace_back(add(s)), &shape_, &circle);
+    const b2Polygon rectangle = b2MakeBox(float(kBoxWidth / 2), float(kBoxHeight / 2));
+    for (const Start& s : boxes()) b2CreatePolygonShape(boxes_.emplace_back(add(s)), &shape_, &rectangle);
+  }
+  void step() { b2World_Step(world_, 1.0f / kFps, 4); }
+  b2Vec2 ball(std::size_t i) const { return b2Body_GetPosition(balls_[i]); }
+  // turned over, as rows of pixels are
+  b2Transform box(std::size_t i) const {
+    return {b2Body_GetPosition(boxes_[i]), b2InvertRot(b2Body_GetRotation(boxes_[i]))};
+  }
+
+ private:
+  b2BodyId add(const Start& s) const {
+    b2BodyDef def = b2DefaultBodyDef();
+    def.type = b2_dynamicBody;
+    def.position = {float(s.x), float(s.y)};
+    def.linearVelocity = {float(s.vx), float(s.vy)};
+    def.angularVelocity = float(s.spin);
+    return b2CreateBody(world_, &def);
+  }
+
+  b2WorldId world_;
+  b2ShapeDef shape_;
+  std::vector<b2BodyId> balls_, boxes_;
+};
+
+#else
+
+class Room {
+ public:
+  Room() {
+    b2BodyDef ground;
+    b2ChainShape walls;
+    walls.CreateLoop(kCorners, 4);
+    world_.CreateBody(&ground)->CreateFixture(&walls, 0);
+    b2CircleShape circle;
+    circle.m_radius = float(kBallRadius);
+    for (const Start& s : balls()) balls_.push_back(add(s, circle));
+    b2PolygonShape rectangle;
+    rectangle.SetAsBox(float(kBoxWidth / 2), float(kBoxHeight / 2));
+    for (const Start& s : boxes()) boxes_.push_back(add(s, rectangle));
+  }
+  void step() { world_.Step(1.0f / kFps, 8, 3); }
+  b2Vec2 ball(std::size_t i) const { return balls_[i]->GetPosition(); }
+  // turned over, as rows of pixels are
+  b2Transform box(std::size_t i) const { return {boxes_[i]->GetPosition(), b2Rot(-boxes_[i]->GetAngle())}; }
+
+ private:
+  b2Body* add(const Start& s, const b2Shape& shape) {
+    b2BodyDef def;
+    def.type = b2_dynamicBody;
+    def.position.Set(float(s.x), float(s.y));
+    def.linearVelocity.Set(float(s.vx), float(s.vy));
+    def.angularVelocity = float(s.spin);
+    b2Body* body = world_.CreateBody(&def);
+    b2FixtureDef fixture;
+    fixture.shape = &shape;
+    fixture.density = 1;
+    fixture.friction = 0;
+    fixture.restitution = float(kElasticity);
+    fixture.filter.groupIndex = -1;
+    body->CreateFixture(&fixture);
+    return body;
+  }
+
+  b2World world_{{0, float(kGravity)}};
+  std::vector<b2Body*> balls_, boxes_;
+};
+
+#endif
 
 // The GL functions used, looked up once.
 #define FUNCTIONS(F)                                                                                        \
@@ -106,10 +191,10 @@ b2Body* add(b2World& world, const Start& s, const b2Shape& shape, float density)
   F(PFNGLLINKPROGRAMPROC, glLinkProgram)                                                                    \
   F(PFNGLUSEPROGRAMPROC, glUseProgram)                                                                      \
   F(PFNGLGENVERTEXARRAYSPROC, glGenVertexArrays)                                                            \
-  F(PFNGLBINDVERTEXARRAYPROC, glBindVertexArray) F(PFNGLGENBUFFERSPROC, glGenBuffers)                       \
-      F(PFNGLBINDBUFFERPROC, glBindBuffer) F(PFNGLBUFFERDATAPROC, glBufferData)                             \
-          F(PFNGLVERTEXATTRIBPOINTERPROC, glVertexAttribPointer) F(PFNGLENABLEVERTEXATTRIBARRAYPROC,        \
-                                                                   glEnableVertexAttribArray)               \
+  F(PFNGLBINDVERTEXARRAYPROC, glBindVertexArray)                                                            \
+  F(PFNGLGENBUFFERSPROC, glGenBuffers) F(PFNGLBINDBUFFERPROC, glBindBuffer)                                 \
+      F(PFNGLBUFFERDATAPROC, glBufferData) F(PFNGLVERTEXATTRIBPOINTERPROC, glVertexAttribPointer)           \
+          F(PFNGLENABLEVERTEXATTRIBARRAYPROC, glEnableVertexAttribArray)                                    \
               F(PFNGLGENFRAMEBUFFERSPROC, glGenFramebuffers) F(PFNGLBINDFRAMEBUFFERPROC, glBindFramebuffer) \
                   F(PFNGLGENRENDERBUFFERSPROC, glGenRenderbuffers)                                          \
                       F(PFNGLBINDRENDERBUFFERPROC, glBindRenderbuffer)                                      \
@@ -197,42 +282,30 @@ int main(int argc, char** argv) {
   std::FILE* out = film(argv[1], "rgba");
   if (!out) return 4;
 
-  b2World world({0, float(kGravity)});
-  b2BodyDef ground;
-  b2ChainShape walls;  // clockwise: its solid side is outside
-  const b2Vec2 corners[4] = {{0, 0}, {0, kRoomHeight}, {kRoomWidth, kRoomHeight}, {kRoomWidth, 0}};
-  walls.CreateLoop(corners, 4);
-  world.CreateBody(&ground)->CreateFixture(&walls, 0);
-  b2CircleShape circle;
-  circle.m_radius = float(kBallRadius);
-  b2PolygonShape rectangle;
-  rectangle.SetAsBox(float(kBoxWidth / 2), float(kBoxHeight / 2));
+  Room room;
   const auto ball_starts = balls(), box_starts = boxes();
-  std::vector<b2Body*> ball_bodies, box_bodies;
-  for (const Start& s : ball_starts) ball_bodies.push_back(add(world, s, circle, 1));
-  for (const Start& s : box_starts) box_bodies.push_back(add(world, s, rectangle, 1));
-
   Screen screen;
   const Mesh still = still_picture();
   for (int frame = 0; frame < frames; ++frame) {
     Mesh mesh = still;
-    for (std::size_t i = 0; i < ball_bodies.size(); ++i) {
-      const b2Vec2 center = pixel(ball_bodies[i]->GetPosition());
+    for (std::size_t i = 0; i < ball_starts.size(); ++i) {
+      const b2Vec2 center = pixel(room.ball(i));
       mesh.disc(center, float(kBallRadius * kScale), outline(ball_starts[i].color));
       mesh.disc(center, float(kBallRadius * kScale - kOutline), fill(ball_starts[i].color));
     }
-    for (std::size_t i = 0; i < box_bodies.size(); ++i) {
-      const b2Transform pose(pixel(box_bodies[i]->GetPosition()), b2Rot(-box_bodies[i]->GetAngle()));
+    for (std::size_t i = 0; i < box_starts.size(); ++i) {
+      b2Transform pose = room.box(i);
+      pose.p = pixel(pose.p);
       const float w = float(kBoxWidth * kScale / 2), h = float(kBoxHeight * kScale / 2),
                   line = float(kOutline);
       const Rgb edge = outline(box_starts[i].color);
       mesh.box(pose, w, h, edge);
       mesh.box(pose, w - line, h - line, fill(box_starts[i].color));
-      mesh.line(b2Mul(pose, b2Vec2(-line / 2, 0)), b2Mul(pose, b2Vec2(0.6f * h, 0)), line, edge);
-      mesh.line(pose.p, b2Mul(pose, b2Vec2(0, -0.6f * h)), line, edge);
+      mesh.line(placed(pose, -line / 2, 0), placed(pose, 0.6f * h, 0), line, edge);
+      mesh.line(pose.p, placed(pose, 0, -0.6f * h), line, edge);
     }
     std::fwrite(screen.draw(mesh), 4, std::size_t(kWidth) * kHeight, out);
-    world.Step(1.0f / kFps, 8, 3);
+    room.step();
   }
   return argv[1] == std::string("-") ? std::fclose(out) != 0 : pclose(out) != 0;
 }
