@@ -22,7 +22,7 @@
 namespace obscura::media {
 
 namespace {
-constexpr int kWindow = 32768, kLeast = 3, kMost = 258;
+constexpr int kWindow = 32768, kLeast = 3, kMostOfMatch = 258;
 constexpr int kLong = 48;    // bytes of a match that is taken at once
 constexpr int kLiteral = 8;  // bits of a byte without a match
 constexpr int kCode = 8;     // bits of a match, beside those of its distance
@@ -39,15 +39,15 @@ struct Codes {
   std::array<std::uint8_t, kLengths> length_bits{};
   std::array<std::uint16_t, kDistances> distance{};
   std::array<std::uint8_t, kDistances> distance_bits{};
-  std::array<std::uint8_t, kMost + 1> of_length{};
+  std::array<std::uint8_t, kMostOfMatch + 1> of_length{};
   std::array<std::uint8_t, 512> of_distance{};  // of distance - 1: below 256, and in 128s
 
   constexpr Codes() {
     for (int code = 0, least = kLeast; code < kLengths; ++code) {
       const int bits = code < 8 || code == 28 ? 0 : code / 4 - 1;
-      if (code == 28) least = kMost;
+      if (code == 28) least = kMostOfMatch;
       length[std::size_t(code)] = std::uint16_t(least), length_bits[std::size_t(code)] = std::uint8_t(bits);
-      for (int n = least; n < least + (1 << bits) && n <= kMost; ++n)
+      for (int n = least; n < least + (1 << bits) && n <= kMostOfMatch; ++n)
         of_length[std::size_t(n)] = std::uint8_t(code);
       least += 1 << bits;
     }
@@ -169,9 +169,9 @@ Code code_of(std::span<const std::uint32_t> counts, int most) {
 // A literal, or a match: kMatch | length << 16 | distance - 1.
 constexpr std::uint32_t kMatch = 0x80000000;
 
-class Blocks {
+class DeflateBlocks {
  public:
-  explicit Blocks(std::vector<std::uint8_t>& out) : bits_(out) { symbols_.reserve(kBlock + 1); }
+  explicit DeflateBlocks(std::vector<std::uint8_t>& out) : bits_(out) { symbols_.reserve(kBlock + 1); }
 
   void literal(std::uint8_t byte) {
     symbols_.push_back(byte);
@@ -182,8 +182,8 @@ class Blocks {
   void match(std::size_t length, int distance) {
     const int code = kCodes.distance_code(distance);
     while (length > 0) {
-      std::size_t part = std::min<std::size_t>(length, kMost);
-      if (length > kMost && length < kMost + kLeast) part = kMost - kLeast;
+      std::size_t part = std::min<std::size_t>(length, kMostOfMatch);
+      if (length > kMostOfMatch && length < kMostOfMatch + kLeast) part = kMostOfMatch - kLeast;
       symbols_.push_back(kMatch | std::uint32_t(part) << 16 | std::uint32_t(distance - 1));
       ++literals_[257u + kCodes.of_length[part]];
       ++distances_[std::size_t(code)];
@@ -206,7 +206,7 @@ class Blocks {
   std::array<std::uint32_t, kDistances> distances_{};
 };
 
-void Blocks::write(bool last) {
+void DeflateBlocks::write(bool last) {
   ++literals_[kEnd];
   const Code literals = code_of(literals_, 15), distances = code_of(distances_, 15);
   bits_.put(last ? 1 : 0, 1);
@@ -231,7 +231,7 @@ void Blocks::write(bool last) {
 }
 
 // the lengths of both codes, by runs, in a code of their own (3.2.7)
-void Blocks::write_codes(const Code& literals, const Code& distances) {
+void DeflateBlocks::write_codes(const Code& literals, const Code& distances) {
   std::size_t many = kLiterals, far = kDistances;
   while (many > 257 && literals.lengths[many - 1] == 0) --many;
   while (far > 1 && distances.lengths[far - 1] == 0) --far;
@@ -325,8 +325,8 @@ class Matcher {
     Match best;
     const auto here = std::int32_t(p - begin_);
     if (here >= std::int32_t(pixel_)) consider(p, int(pixel_), end_, best);
-    if (best.length >= kMost) return best;
-    const std::uint8_t* const end = end_ - p > kMost ? p + kMost : end_;
+    if (best.length >= kMostOfMatch) return best;
+    const std::uint8_t* const end = end_ - p > kMostOfMatch ? p + kMostOfMatch : end_;
     if (row_ <= kWindow && here >= std::int32_t(row_)) consider(p, int(row_), end, best);
     if (best.length >= kLong || end_ - p < 4 || !begins_pixel(p)) return best;
 
@@ -382,7 +382,7 @@ class Matcher {
     const std::size_t length = alike(p - distance, p, end);
     if (length < kLeast) return;
     const int bits = kCode + kCodes.distance_bits[std::size_t(kCodes.distance_code(distance))];
-    const int gain = int(std::min<std::size_t>(length, kMost)) * kLiteral - bits;
+    const int gain = int(std::min<std::size_t>(length, kMostOfMatch)) * kLiteral - bits;
     if (gain > best.gain) best = {length, distance, gain};
   }
 
@@ -395,7 +395,7 @@ class Matcher {
 
 std::vector<std::uint8_t> deflated(std::span<const std::uint8_t> bytes, std::size_t row, std::size_t pixel) {
   std::vector<std::uint8_t> out = {0x78, 0x5e};  // a window of 32 KiB, a quick method (RFC 1950, 2.2)
-  Blocks blocks(out);
+  DeflateBlocks blocks(out);
   Matcher matcher(bytes, row, pixel);
   const std::uint8_t *p = bytes.data(), *const end = p + bytes.size();
   while (p < end) {

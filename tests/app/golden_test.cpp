@@ -106,9 +106,9 @@ TEST_F(Golden, AKeyThatShowsInNeitherStateNorPictureIsTold) {
 }
 
 TEST_F(Golden, ARecordTellsOfAnotherTextOfTheScene) {
-  change("size = [160, 90]", "size = [160, 90]\nkeep = \"hash\"");
+  change("[golden]", "[golden]\nkeep = \"hash\"");
   ASSERT_EQ(golden("--update").exit, 0);
-  change("[1, 1]\ncolor", "[1, 1]\nmass = 5\ncolor");
+  change("color = \"green\"\n[golden]", "mass = 5\ncolor = \"green\"\n[golden]\nkeep = \"hash\"");
   const Outcome run = golden();
   EXPECT_EQ(run.exit, 0) << run.out;
   EXPECT_THAT(run.out, HasSubstr("state and picture are the same; the text of the scene is another one"));
@@ -116,7 +116,7 @@ TEST_F(Golden, ARecordTellsOfAnotherTextOfTheScene) {
 
 // A plot spans the run: at 0 s both stand alike, and the plot of what follows does not.
 TEST_F(Golden, APlotOfARunThatDiffersLaterIsNoDrawingThatDiffers) {
-  change("[golden]", "[[film.plot]]\nquantity = \"energy\"\n[golden]");
+  change("[golden]", "[[film.plot]]\nquantity = [\"energy\"]\n[golden]");
   ASSERT_EQ(obscura("render scene.toml --at 0 --size 160x90 -o a.png").exit, 0);
   ASSERT_EQ(obscura("render scene.toml --at 0 --size 160x90 -o b.png --set ball.elasticity=0.3").exit, 0);
   const Outcome run = obscura("compare a.png b.png");

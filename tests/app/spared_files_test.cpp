@@ -72,7 +72,7 @@ TEST_F(SparedFiles, AShorterSequenceLeavesNoFramesOfTheLongerOne) {
   ASSERT_EQ(obscura("render box.toml -o 'f/{frame}.png' --set duration=0.2 --frames 0,1").exit, 0);
   EXPECT_TRUE(std::filesystem::exists(path("f/3.png")));
   // nor does a film what is no frame, or of another scene
-  shell("touch f/2.png && cp box.toml disc.toml");
+  shell("echo mine > f/2.png && cp box.toml disc.toml");
   ASSERT_EQ(obscura("render box.toml -o 'f/{frame}.png'").exit, 0);
   EXPECT_TRUE(std::filesystem::exists(path("f/2.png")));
   ASSERT_EQ(obscura("render box.toml -o 'f/{frame}.png' --set duration=0.2").exit, 0);
