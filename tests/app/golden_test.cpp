@@ -116,9 +116,9 @@ TEST_F(Golden, ARecordTellsOfAnotherTextOfTheScene) {
 
 // A plot spans the run: at 0 s both stand alike, and the plot of what follows does not.
 TEST_F(Golden, APlotOfARunThatDiffersLaterIsNoDrawingThatDiffers) {
-  change("[golden]", "[[film.plot]]\nquantity = [\"energy\"]\n[golden]");
+  change("[golden]", "[[film.plot]]\nquantity = [\"vy\"]\nof = \"ball\"\n[golden]");
   ASSERT_EQ(obscura("render scene.toml --at 0 --size 160x90 -o a.png").exit, 0);
-  ASSERT_EQ(obscura("render scene.toml --at 0 --size 160x90 -o b.png --set ball.elasticity=0.3").exit, 0);
+  ASSERT_EQ(obscura("render scene.toml --at 0 --size 160x90 -o b.png --set ball.elasticity=0.9").exit, 0);
   const Outcome run = obscura("compare a.png b.png");
   EXPECT_EQ(run.exit, 1) << run.out;
   EXPECT_THAT(run.out, HasSubstr("states are the same at t = 0 s, but not through the run"));
