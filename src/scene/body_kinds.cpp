@@ -91,7 +91,7 @@ constexpr BodyKind kKinds[] = {
      .dimension = 0, .instead = "", .turns = true, .handout = true, .own_origin = false, .varies = false,
      .measure = "size", .stream = 1,
      .keys = [] { return std::vector<Key>{
-         {.path = "box.size", .form = Form::vector, .unit = "m", .fallback = "[0.8, 0.5]", .range = {0, 1e6, true}, .in_space = "[0.8, 0.5, 0.6]",
+         {.path = "box.size", .form = Form::vector, .unit = "m", .fallback = "[0.8, 0.5]", .range = {0, 1e13, true}, .in_space = "[0.8, 0.5, 0.6]",
           .doc = "Width and height, in space width, height and depth, in its own frame.", .example = "[1.0, 0.5]"}}; },
      .plane = makes<sim::Box<2>, 2>(box<2>), .space = makes<sim::Box<3>, 3>(box<3>)},
 
@@ -137,7 +137,7 @@ constexpr BodyKind kKinds[] = {
           .doc = "The part is a ball; with a `length`, a capsule.", .example = "0.1"},
          {.path = "body.shapes.length", .form = Form::number, .unit = "m", .absent = "no capsule", .range = kAboveZero, .dimension = 3,
           .doc = "The part is a capsule along its own y, of this length from end to end.", .example = "0.5"},
-         {.path = "body.shapes.size", .form = Form::vector, .unit = "m", .absent = "no box", .range = {0, 1e6, true},
+         {.path = "body.shapes.size", .form = Form::vector, .unit = "m", .absent = "no box", .range = {0, 1e13, true},
           .doc = "The part is a box.", .example = "[0.6, 0.1]"},
          {.path = "body.shapes.points", .form = Form::points, .unit = "m", .absent = "no polygon",
           .doc = "The part is a convex polygon, in space a hull.", .example = "[[0, 0], [0.3, 0], [0.2, 0.25]]"},

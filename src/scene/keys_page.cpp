@@ -217,7 +217,8 @@ motor   = { position = "0.2*sin(3*t)", most = 50 }
 A pulley is a rope without mass, which runs from the first end `over` points of the room and of bodies to the second: it slides over them
 without friction, pulls alone, and several turns make a block and tackle. In the plane the name of a ball that turns is a wheel: the rope runs
 around it, on the side of the shorter way, without slipping, and the wheel's inertia counts; the tensions on both sides of it differ, and each
-piece of the rope is a joint of its own, `rope[0]`, `rope[1]`, ..., that reports its own. A gear makes the angle of a pin, in space of a hinge,
+piece of the rope is a joint of its own, `rope[0]`, `rope[1]`, ..., that reports its own. A rope whose end is the wheel that it last runs over is
+wound on it, as on a yo-yo or a winch: it leaves the wheel on the side on which its other end lies. A gear makes the angle of a pin, in space of a hinge,
 a ratio times that of another: wheels with teeth outside have a negative ratio, that of their radii. With the way of a slider, in metres, it is a
 rack: its ratio is the pinion's radius. What it reports is the force of its teeth.
 
@@ -227,6 +228,11 @@ name    = "rope"
 type    = "pulley"
 between = ["left", "right"]
 over    = ["wheel"]
+
+[[joint]]                                                        # a winch: the rope is wound on its drum
+type    = "pulley"
+between = ["load", "drum"]
+over    = ["drum"]
 
 [[joint]]                                                        # a block and tackle of two turns
 type    = "pulley"

@@ -67,7 +67,7 @@ std::vector<Key> rows() {
 
       {.path = "room", .form = table,
        .doc = "The room: its walls, and forces everywhere in it. Left out: 8 m by 4.5 m, four walls."},
-      {.path = "room.size", .form = vector, .unit = "m", .fallback = "[8, 4.5]", .range = {0, 1e6, true}, .in_space = "[12, 4.5, 8]",
+      {.path = "room.size", .form = vector, .unit = "m", .fallback = "[8, 4.5]", .range = {0, 1e13, true}, .in_space = "[12, 4.5, 8]",
        .doc = "Width and height. Gives four walls, in this order: floor, left, right, ceiling; in space width, height and depth, and "
               "also back and front. Left out with `walls` given: only those walls.",
        .example = "[4, 3]"},
@@ -389,7 +389,7 @@ std::vector<Key> rows() {
       {.path = "attractor.name", .form = name, .absent = "`attractor[0]`, ...", .doc = "Its name for `--set`.", .example = "\"sun\""},
       {.path = "attractor.of", .form = bodies, .absent = "every body", .doc = "The bodies that it attracts.", .example = "\"planet[*]\""},
       {.path = "attractor.strength", .form = number, .unit = "m^3/s^2", .required = true, .doc = "S; negative: it repels.", .example = "5"},
-      {.path = "attractor.center", .form = place, .required = true, .doc = "Its place, or a body, which feels the opposite force.", .example = "[4, 2]"},
+      {.path = "attractor.center", .form = place, .required = true, .doc = "Its place, which is not drawn, or a body, which feels the opposite force.", .example = "[4, 2]"},
       {.path = "attractor.softening", .form = number, .unit = "m", .fallback = "0", .range = kNotNegative,
        .doc = "s: the potential is -S m / sqrt(r^2 + s^2).", .example = "0.1"},
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -68,6 +69,17 @@ double side_of_turn(const sim::Vec<2>& a, const sim::Vec<2>& b, const sim::Vec<2
   return u[0] * v[1] - u[1] * v[0] > 0 ? 1 : -1;
 }
 
+// On which side a rope from p leaves a wheel at c that it is wound on, as side_of_turn() has it of its way
+// from p to c: on the side on which p lies, left or right of the middle where it is more above or below, else
+// above or below it. Zero: p lies on neither.
+double side_of_winding(const sim::Vec<2>& p, const sim::Vec<2>& c) {
+  const sim::Vec<2> far = p - c;
+  const bool upright = std::fabs(far[0]) <= std::fabs(far[1]);
+  const sim::Vec<2> side = upright ? sim::Vec<2>(far[0], 0) : sim::Vec<2>(0, far[1]);
+  const double turn = far[0] * side[1] - far[1] * side[0];  // from c to p
+  return std::fabs(turn) <= kWhole * far.squaredNorm() ? 0 : turn > 0 ? 1 : -1;
+}
+
 }  // namespace
 
 template <int D>
@@ -106,6 +118,15 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
   for (const Node& each : over->list()) good = good && add(each, true);
   good = good && add(between->list()[1], false);
   if (!good) return;
+  // an end that is the wheel beside it: the rope is wound on that
+  const auto wound = [&](const Node& end, const Node& wheel, const Turn<D>& turn) {
+    return turn.radius > 0 && end.is_text() && wheel.is_text() && end.text() == wheel.text();
+  };
+  const std::size_t wheels = over->list().size();
+  if (wheels > 0 && turns.size() > 2 && wound(between->list()[1], over->list()[wheels - 1], turns[wheels]))
+    turns.pop_back();
+  if (wheels > 0 && turns.size() > 2 && wound(between->list()[0], over->list()[0], turns[1]))
+    turns.erase(turns.begin());
   // the first end moves, if one does
   const bool turned_round = turns.front().end.body < 0 && turns.back().end.body >= 0;
   if (turned_round) std::reverse(turns.begin(), turns.end());
@@ -126,6 +147,19 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
         offsets[std::size_t(i)] =
             turns[std::size_t(i)].radius *
             side_of_turn(at[std::size_t(i - 1)], at[std::size_t(i)], at[std::size_t(i + 1)]);
+    for (const auto& [wheel, next, sign] : {std::tuple(0, 1, -1), std::tuple(n - 1, n - 2, 1)}) {
+      const double radius = turns[std::size_t(wheel)].radius;
+      if (!(radius > 0)) continue;
+      const double side = sign * side_of_winding(at[std::size_t(next)], at[std::size_t(wheel)]);
+      if (side == 0) {
+        complaints.add(over->place,
+                       fmt::format("on which side does the rope leave '{}', on which it is wound? Move "
+                                   "what it goes to a little to one side of its middle",
+                                   world.model.bodies[std::size_t(turns[std::size_t(wheel)].end.body)].name));
+        return;
+      }
+      offsets[std::size_t(wheel)] = radius * side;
+    }
   }
   const auto is_wheel = [&](int i) { return turns[std::size_t(i)].radius > 0; };
   const bool one_piece =

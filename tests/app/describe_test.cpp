@@ -49,6 +49,22 @@ TEST_F(Describe, SaysWhatHitsWhatWhenAndHowFast) {
   EXPECT_EQ(run.out.find("hits the floor"), run.out.rfind("hits the floor"));
 }
 
+// sqrt(2 g h) = 4.429 m/s, half of that after it: not the speed with which the step began; a millionth as
+// large too
+TEST_F(Describe, TellsTheSpeedOfAnImpactInRoomsOfEverySize) {
+  for (const char* const unit : {"", "e-6"}) {
+    const auto m = [&](const char* number) { return std::string(number) + unit; };
+    scene("duration = 1\n[room]\nsize = [" + m("4") + ", " + m("3") + "]\ngravity = [0, " + m("-9.81") +
+          "]\n[[ball]]\nname = \"ball\"\nradius = " + m("0.25") + "\nposition = [" + m("2") + ", " +
+          m("1.25") + "]\nelasticity = 0.5\n");
+    const Outcome run = obscura("describe scene.toml");
+    ASSERT_EQ(run.exit, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("starts at (" + m("2") + ", " + m("1.25") + ") m, at rest."));
+    EXPECT_THAT(run.out, HasSubstr("At 0.452 s the ball hits the floor at " + m("4.43") + " m/s."));
+    EXPECT_THAT(run.out, HasSubstr("At 0.903 s the ball hits the floor at " + m("2.21") + " m/s."));
+  }
+}
+
 TEST_F(Describe, SaysNothingOfWhatDoesNotCome) {
   scene(
       "duration = 1\n[room]\nsize = [4, 3]\ngravity = [0, 0]\n[[ball]]\nname = \"hub\"\nradius = 0.2\n"

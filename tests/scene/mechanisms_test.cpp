@@ -520,6 +520,41 @@ TEST(Mechanisms, OnTheLinksOfChainsAreAsOnOtherBodies) {
 }
 
 // Pieces of a rope have their numbers from the end that is written first, whichever end is fast.
+// a rope that is wound on a wheel: m g = (m + I/r^2) a of a winch, a = g/(1 + I/(m r^2)) of a yo-yo
+TEST(Pulley, ARopeIsWoundOnAWheelAtItsEnd) {
+  for (const char* const manner : {"solver = 'direct'", "solver = 'iterative'", "collision = 'event'"}) {
+    for (const double side : {-1, 1}) {
+      for (const bool turned : {false, true}) {
+        const std::string between = turned ? "between = ['drum', 'load']\n" : "between = ['load', 'drum']\n";
+        TextRun winch(
+            fmt::format("duration = 2\n[room]\nsize = [8, 8]\nwalls = 'none'\n[physics]\n{}\n"
+                        "[[ball]]\nname = 'drum'\nradius = 0.3\nmass = 4\nposition = [4, 6]\n"
+                        "[[joint]]\ntype = 'pin'\nbetween = ['drum', 'room']\n"
+                        "[[particle]]\nname = 'load'\nmass = 1\nposition = [{}, 5]\n"
+                        "[[joint]]\nname = 'rope'\ntype = 'pulley'\n{}over = ['drum']\n",
+                        manner, 4 + 0.3 * side, between));
+        const sim::Snapshot now = winch.at(0.5);
+        const double a = 9.81 / (1 + 2);  // I/r^2 = M/2
+        EXPECT_NEAR(now.bodies[number_of(winch, "load")].velocity.y(), -0.5 * a, 1e-6) << manner;
+        EXPECT_NEAR(now.bodies[number_of(winch, "drum")].spin.z(), -side * 0.5 * a / 0.3, 1e-5) << manner;
+        EXPECT_NEAR(now.joints[1].force.norm(), 9.81 - a, 1e-5) << manner;
+
+        TextRun yoyo(
+            fmt::format("duration = 2\n[room]\nsize = [8, 8]\nwalls = 'none'\n[physics]\n{}\n"
+                        "[[ball]]\nname = 'drum'\nradius = 0.3\nmass = 4\nposition = [4, 5]\n"
+                        "[[joint]]\nname = 'rope'\ntype = 'pulley'\nbetween = {}\nover = ['drum']\n",
+                        manner,
+                        turned ? fmt::format("['drum', [{}, 7]]", 4 + 0.3 * side)
+                               : fmt::format("[[{}, 7], 'drum']", 4 + 0.3 * side)));
+        const sim::Snapshot then = yoyo.at(0.5);
+        EXPECT_NEAR(then.bodies[0].velocity.y(), -0.5 * 9.81 / 1.5, 1e-6) << manner;
+        EXPECT_NEAR(then.bodies[0].velocity.x(), 0, 1e-6) << manner;
+        EXPECT_NEAR(then.bodies[0].spin.z(), side * -0.5 * 9.81 / 1.5 / 0.3 * -1, 1e-5) << manner;
+      }
+    }
+  }
+}
+
 TEST(Pulley, PiecesAreNumberedFromTheFirstEnd) {
   const std::string yoyo =
       "duration = 1\n[room]\nsize = [4, 4]\nwalls = \"none\"\n[[ball]]\nname = \"disc\"\nradius = 0.2\nmass "

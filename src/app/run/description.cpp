@@ -29,10 +29,20 @@ constexpr std::size_t kToldSingly = 6;        // bodies, impacts: told one by on
 constexpr std::size_t kMostHappenings = 300;  // impacts that are listed
 constexpr double kSoft = 0.02;                // of sqrt(g L): slower is no impact
 constexpr double kSame = 1e-3;                // of the energy: it has not changed
+constexpr double kStill = 1e-9;               // of the room's height a second: slower does not move
+constexpr double kNothing = 1e-30, kSmall = 1e-4, kLarge = 1e6;  // numbers that are told as 0, with a power
 
-// three digits that count
+// three digits that count; of what is very small or large with a power of ten: 2.5e-6
 std::string numeral(double x) {
-  if (!(std::abs(x) > 1e-9)) return "0";
+  if (!(std::abs(x) > kNothing)) return "0";
+  if (!(std::abs(x) >= kSmall && std::abs(x) < kLarge)) {
+    const std::string text = fmt::format("{:.2e}", x);
+    const std::size_t e = text.find('e');
+    std::string digits = text.substr(0, e);
+    while (digits.back() == '0') digits.pop_back();
+    if (digits.back() == '.') digits.pop_back();
+    return fmt::format("{}e{}", digits, std::stoi(text.substr(e + 1)));
+  }
   const int decimals = std::clamp(2 - int(std::floor(std::log10(std::abs(x)))), 0, 9);
   std::string text = fmt::format("{:.{}f}", x, decimals);
   if (decimals == 0) return text;
@@ -41,11 +51,18 @@ std::string numeral(double x) {
   return text;
 }
 
-std::string time(double t) { return numeral(std::round(1000 * t) / 1000) + " s"; }
+// to a thousandth of what all lasts, or is long, but that where it is longer than 1
+double rounded(double x, double all) {
+  const double unit = 1e-3 * std::min(1.0, std::pow(10.0, std::floor(std::log10(std::max(all, kNothing)))));
+  const double parts = std::round(1 / unit);
+  return std::round(x * parts) / parts;
+}
 
-std::string whereabouts(const sim::Vec3& p, int dimension) {
-  // a millimetre is enough
-  const auto at = [](double x) { return numeral(std::round(1000 * x) / 1000); };
+std::string time(double t, double duration) { return numeral(rounded(t, duration)) + " s"; }
+
+std::string whereabouts(const sim::Vec3& p, const sim::SceneInfo& cast) {
+  const int dimension = cast.dimension;
+  const auto at = [&](double x) { return numeral(rounded(x, cast.scale)); };
   return dimension == 2 ? fmt::format("({}, {}) m", at(p.x()), at(p.y()))
                         : fmt::format("({}, {}, {}) m", at(p.x()), at(p.y()), at(p.z()));
 }
@@ -73,8 +90,9 @@ std::string wall(const sim::SceneInfo& cast, int index) {
 }
 
 // "at 3 m/s to the right and up"
-std::string motion(const sim::Vec3& v, int dimension) {
-  const double speed = v.norm();
+std::string motion(const sim::Vec3& v, const sim::SceneInfo& cast) {
+  const int dimension = cast.dimension;
+  const double speed = v.norm() > kStill * cast.scale ? v.norm() : 0;
   std::vector<std::string> way;
   if (dimension == 2 && std::abs(v.x()) > 0.3 * speed)
     way.emplace_back(v.x() > 0 ? "to the right" : "to the left");
@@ -163,6 +181,7 @@ class Account {
   std::vector<std::string> events() const;
   std::vector<std::string> extremes() const;
   std::vector<std::string> ending() const;
+  std::string when(double t) const { return time(t, sim::value(scene_.duration)); }
   std::string other(const Impact& each) const {
     return each.other >= 0 ? called(cast_, each.other) : wall(cast_, each.wall);
   }
@@ -190,21 +209,40 @@ class Account {
 void Account::read(const sim::Snapshot& now) {
   std::set<Pair> touching;
   std::map<Pair, Impact> met;
+  const double h = last_ ? now.time - last_->time : 0;
   for (const sim::Snapshot::Contact& each : now.contacts) {
     const Pair pair{each.body, each.other, each.wall};
     touching.insert(pair);
     if (!last_) continue;
-    // how fast they came together, by the velocities before
-    const auto at = [&](int body) -> sim::Vec3 {
+    // how fast they came together: by the velocities before and what pushes them, at the time tau at which
+    //   -u tau - a tau^2 / 2 + u' (h - tau) = the way of one past the other in the step
+    const auto at = [&](const sim::Snapshot& instant, int body) -> sim::Vec3 {
       if (body < 0) return sim::Vec3::Zero();
-      const sim::Snapshot::Body& it = last_->bodies[std::size_t(body)];
+      const sim::Snapshot::Body& it = instant.bodies[std::size_t(body)];
       return it.velocity + it.spin.cross(each.point - it.position);
     };
-    const double speed = (at(each.other) - at(each.body)).dot(each.normal);
+    const auto pushed = [&](int body) -> sim::Vec3 {
+      if (body < 0 || cast_.bodies[std::size_t(body)].fixed) return sim::Vec3::Zero();
+      const sim::Snapshot::Body& it = last_->bodies[std::size_t(body)];
+      return cast_.gravity + (it.field + it.drag + it.blast) / cast_.bodies[std::size_t(body)].mass;
+    };
+    const auto way = [&](int body) -> sim::Vec3 {
+      if (body < 0) return sim::Vec3::Zero();
+      return now.bodies[std::size_t(body)].position - last_->bodies[std::size_t(body)].position +
+             0.5 * h *
+                 (last_->bodies[std::size_t(body)].spin + now.bodies[std::size_t(body)].spin)
+                     .cross(each.point - now.bodies[std::size_t(body)].position);
+    };
+    const double begun = (at(*last_, each.other) - at(*last_, each.body)).dot(each.normal),
+                 ended = (at(now, each.body) - at(now, each.other)).dot(each.normal),
+                 a = (pushed(each.other) - pushed(each.body)).dot(each.normal),
+                 gone = (way(each.body) - way(each.other)).dot(each.normal), u = begun + 0.5 * h * a;
+    const double tau = u + ended > 0 ? std::clamp((ended * h - gone) / (u + ended), 0.0, h) : 0;
+    const double speed = begun + a * tau;
     const bool struck = each.impulse.dot(each.normal) > 0 || !touching_.contains(pair);
     if (!struck || !(speed > soft_)) continue;
     Impact& impact = met[pair];
-    if (speed > impact.speed) impact = {now.time, speed, each.body, each.other, each.wall};
+    if (speed > impact.speed) impact = {last_->time + tau, speed, each.body, each.other, each.wall};
   }
   for (const auto& [pair, impact] : met)
     if (!touching_.contains(pair) || impact.speed > 4 * soft_) impacts_.push_back(impact);
@@ -240,17 +278,18 @@ std::vector<std::string> Account::beginning() const {
   const std::vector<int> bodies = moving(cast_);
   if (bodies.size() > kToldSingly) {
     std::size_t resting = 0;
-    for (const int body : bodies) resting += !(first_->bodies[std::size_t(body)].velocity.norm() > 1e-9);
+    for (const int body : bodies)
+      resting += !(first_->bodies[std::size_t(body)].velocity.norm() > kStill * cast_.scale);
     if (resting == bodies.size()) all.emplace_back("All start without velocity.");
     return all;
   }
   for (const int body : bodies) {
     const sim::Snapshot::Body& it = first_->bodies[std::size_t(body)];
     all.push_back(capital(
-        fmt::format("{} starts at {}, {}.", called(cast_, body), whereabouts(it.position, cast_.dimension),
-                    it.velocity.norm() > 1e-9 ? motion(it.velocity, cast_.dimension)
-                    : it.spin.norm() > 1e-9   ? fmt::format("turning at {} rad/s", numeral(it.spin.norm()))
-                                              : std::string("at rest"))));
+        fmt::format("{} starts at {}, {}.", called(cast_, body), whereabouts(it.position, cast_),
+                    it.velocity.norm() > kStill * cast_.scale ? motion(it.velocity, cast_)
+                    : it.spin.norm() > 1e-9 ? fmt::format("turning at {} rad/s", numeral(it.spin.norm()))
+                                            : std::string("at rest"))));
   }
   return all;
 }
@@ -259,7 +298,7 @@ std::vector<std::string> Account::events() const {
   std::vector<std::pair<double, std::string>> told;
   if (impacts_.size() <= kToldSingly) {
     for (const Impact& each : impacts_)
-      told.emplace_back(each.time, fmt::format("At {} {} hits {} at {} m/s.", time(each.time),
+      told.emplace_back(each.time, fmt::format("At {} {} hits {} at {} m/s.", when(each.time),
                                                called(cast_, each.body), other(each), numeral(each.speed)));
   } else {
     std::map<Pair, std::vector<const Impact*>> pairs;
@@ -270,12 +309,12 @@ std::vector<std::string> Account::events() const {
         const std::string subject = capital(called(cast_, first.body));
         if (all.size() == 1)
           told.emplace_back(first.time, fmt::format("{} hits {} at {}, at {} m/s.", subject, other(first),
-                                                    time(first.time), numeral(first.speed)));
+                                                    when(first.time), numeral(first.speed)));
         else
           told.emplace_back(first.time, fmt::format("{} hits {} {} times: first at {}, at "
                                                     "{} m/s, last at {}, at {} m/s.",
-                                                    subject, other(first), all.size(), time(first.time),
-                                                    numeral(first.speed), time(all.back()->time),
+                                                    subject, other(first), all.size(), when(first.time),
+                                                    numeral(first.speed), when(all.back()->time),
                                                     numeral(all.back()->speed)));
       }
     } else {
@@ -287,25 +326,25 @@ std::vector<std::string> Account::events() const {
           first.time, fmt::format("There are {} impacts: the first at {}, when {} hits {}, "
                                   "and the hardest at {}, when {} "
                                   "hits {} at {} m/s.",
-                                  impacts_.size(), time(first.time), called(cast_, first.body), other(first),
-                                  time(hardest->time), called(cast_, hardest->body), other(*hardest),
+                                  impacts_.size(), when(first.time), called(cast_, first.body), other(first),
+                                  when(hardest->time), called(cast_, hardest->body), other(*hardest),
                                   numeral(hardest->speed)));
     }
   }
   for (std::size_t i = 0; i < broken_.size() && i < kToldSingly; ++i)
     told.emplace_back(broken_[i].first,
-                      fmt::format("At {} {}.", time(broken_[i].first), parting(broken_[i].second)));
+                      fmt::format("At {} {}.", when(broken_[i].first), parting(broken_[i].second)));
   if (broken_.size() > kToldSingly) told.emplace_back(1e300, fmt::format("{} joints break.", broken_.size()));
   for (const draw::Caption& caption : scene_.film.titles.captions) {
     const double at = caption.shown.start ? caption.shown.start->time : 0;
     // what waits for a mark that does not come is not shown
     if (at <= last_->time)
       told.emplace_back(at,
-                        fmt::format("The film says at {}: \"{}\"", time(at), scene::one_line(caption.text)));
+                        fmt::format("The film says at {}: \"{}\"", when(at), scene::one_line(caption.text)));
   }
   std::stable_sort(told.begin(), told.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::string> all;
-  for (auto& [when, sentence] : told) all.push_back(std::move(sentence));
+  for (auto& [at, sentence] : told) all.push_back(std::move(sentence));
   return all;
 }
 
@@ -320,14 +359,14 @@ std::vector<std::string> Account::extremes() const {
     const bool higher = its.highest > start.position.y() + 0.01 * cast_.scale;
     if (faster && higher)
       all.push_back(capital(fmt::format("{} is fastest at {}, with {} m/s, and highest at {}, at y = {} m.",
-                                        called(cast_, body), time(its.when_fastest), numeral(its.fastest),
-                                        time(its.when_highest), numeral(its.highest))));
+                                        called(cast_, body), when(its.when_fastest), numeral(its.fastest),
+                                        when(its.when_highest), numeral(its.highest))));
     else if (faster)
       all.push_back(capital(fmt::format("{} is fastest at {}, with {} m/s.", called(cast_, body),
-                                        time(its.when_fastest), numeral(its.fastest))));
+                                        when(its.when_fastest), numeral(its.fastest))));
     else if (higher)
       all.push_back(capital(fmt::format("{} is highest at {}, at y = {} m.", called(cast_, body),
-                                        time(its.when_highest), numeral(its.highest))));
+                                        when(its.when_highest), numeral(its.highest))));
   }
   return all;
 }
@@ -338,21 +377,21 @@ std::vector<std::string> Account::ending() const {
   std::size_t resting = 0;
   for (const int body : bodies) resting += rest_[std::size_t(body)].has_value();
   if (bodies.size() > kToldSingly) {
-    all.push_back(fmt::format("At the end, at {}, {} of {} bodies are at rest.", time(last_->time),
+    all.push_back(fmt::format("At the end, at {}, {} of {} bodies are at rest.", when(last_->time),
                               resting == bodies.size() ? "all" : numeral(double(resting)), bodies.size()));
   } else {
     for (const int body : bodies) {
       const sim::Snapshot::Body& it = last_->bodies[std::size_t(body)];
       const auto& since = rest_[std::size_t(body)];
       if (since && *since > 0)
-        all.push_back(capital(fmt::format("{} comes to rest at {}, at {}.", called(cast_, body), time(*since),
-                                          whereabouts(it.position, cast_.dimension))));
+        all.push_back(capital(fmt::format("{} comes to rest at {}, at {}.", called(cast_, body), when(*since),
+                                          whereabouts(it.position, cast_))));
       else if (since)
         all.push_back(capital(fmt::format("{} stays at rest.", called(cast_, body))));
       else
-        all.push_back(fmt::format("At the end, at {}, {} is at {} and moves {}.", time(last_->time),
-                                  called(cast_, body), whereabouts(it.position, cast_.dimension),
-                                  motion(it.velocity, cast_.dimension)));
+        all.push_back(fmt::format("At the end, at {}, {} is at {} and moves {}.", when(last_->time),
+                                  called(cast_, body), whereabouts(it.position, cast_),
+                                  motion(it.velocity, cast_)));
     }
   }
   const double before = first_->energies.total(), after = last_->energies.total();
@@ -379,7 +418,7 @@ std::vector<Happening> Account::happenings() const {
   for (const Impact* each : impacts)
     all.push_back({each->time, fmt::format("{} hits {}, closing at {} m/s", called(cast_, each->body),
                                            other(*each), numeral(each->speed))});
-  for (const auto& [when, joint] : broken_) all.push_back({when, parting(joint)});
+  for (const auto& [at, joint] : broken_) all.push_back({at, parting(joint)});
   return all;
 }
 
@@ -446,8 +485,9 @@ Story story(const scene::Scene& scene) {
   sort(all.events);
   if (trouble && !scene.show_divergence) all.trouble = trouble;
   if (trouble)
-    all.sentences.push_back(fmt::format("At {} the run ends: the {} of {} {}.", time(trouble->time),
-                                        trouble->quantity, scene::one_line(trouble->body), trouble->what));
+    all.sentences.push_back(fmt::format("At {} the run ends: the {} of {} {}.",
+                                        time(trouble->time, sim::value(scene.duration)), trouble->quantity,
+                                        scene::one_line(trouble->body), trouble->what));
   return all;
 }
 
@@ -461,7 +501,7 @@ std::string instant_text(const sim::SceneInfo& cast, const sim::Snapshot& now) {
   std::string all;
   const auto add = [&](const std::string& sentence) { all += (all.empty() ? "" : " ") + sentence; };
   const std::vector<int> bodies = moving(cast);
-  add(fmt::format("{} at {}.", capital(listed(cast)), time(now.time)));
+  add(fmt::format("{} at {}.", capital(listed(cast)), time(now.time, now.time)));
   if (bodies.size() > kToldSingly) {
     std::size_t resting = 0;
     for (const int body : bodies) resting += now.bodies[std::size_t(body)].at_rest;
@@ -470,10 +510,9 @@ std::string instant_text(const sim::SceneInfo& cast, const sim::Snapshot& now) {
   }
   for (const int body : bodies) {
     const sim::Snapshot::Body& it = now.bodies[std::size_t(body)];
-    add(capital(fmt::format("{} is at {} and {}.", called(cast, body),
-                            whereabouts(it.position, cast.dimension),
-                            it.velocity.norm() > 1e-9 ? "moves " + motion(it.velocity, cast.dimension)
-                                                      : std::string("does not move"))));
+    add(capital(fmt::format("{} is at {} and {}.", called(cast, body), whereabouts(it.position, cast),
+                            it.velocity.norm() > kStill * cast.scale ? "moves " + motion(it.velocity, cast)
+                                                                     : std::string("does not move"))));
   }
   return all;
 }

@@ -1,0 +1,71 @@
+// Demonstrations of a first course of mechanics against their closed forms or equations of their own, as a
+// lecturer writes them.
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "text_run.h"
+
+namespace obscura::scene {
+namespace {
+
+// A heavy symmetric top that is let go tilted, by Lagrange's equations of nutation th, precession ph:
+//   I1 th'' = I1 ph'^2 sin cos - p ph' sin + m g l sin,   I1 ph' sin^2 = p (cos th0 - cos th),   p = I3 w3
+TEST(Lectures, AHeavyTopNutatesAsLagrangesEquationsSay) {
+  const double g = 9.81, m = 0.5, l = 0.4, I3 = 0.02, I1c = 0.013, w3 = 60, th0 = std::numbers::pi / 3;
+  const TextRun run(fmt::format(
+      "duration = 2\n[room]\nsize = [2, 2, 2]\n[[ball]]\nname = 'top'\nradius = 0.05\nmass = {}\n"
+      "inertia = [{}, {}, {}]\nposition = [{}, {}, 0]\norientation = [0, 0, -60]\nspin = [{}, {}, 0]\n"
+      "[[joint]]\ntype = 'ball'\nbetween = ['top', 'room']\nat = [0, 1, 0]\n",
+      m, I1c, I3, I1c, l * std::sin(th0), 1 + l * std::cos(th0), w3 * 180 / std::numbers::pi * std::sin(th0),
+      w3 * 180 / std::numbers::pi * std::cos(th0)));
+  const double I1 = I1c + m * l * l, p = I3 * w3;
+  using S = std::array<double, 3>;  // th, th', ph
+  const auto rate = [&](const S& s) -> S {
+    const double sine = std::sin(s[0]), cosine = std::cos(s[0]),
+                 turns = p * (std::cos(th0) - cosine) / (I1 * sine * sine);
+    return {s[1], (I1 * turns * turns * cosine - p * turns + m * g * l) * sine / I1, turns};
+  };
+  S s{th0, 0, 0};
+  const double dt = 1e-4;
+  for (int i = 0; i < 10000; ++i) {
+    const auto at = [&](const S& k, double part) {
+      return S{s[0] + part * dt * k[0], s[1] + part * dt * k[1], s[2] + part * dt * k[2]};
+    };
+    const S a = rate(s), b = rate(at(a, 0.5)), c = rate(at(b, 0.5)), d = rate(at(c, 1));
+    for (int k = 0; k < 3; ++k) s[k] += dt / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);
+  }
+  const sim::Vec3 place = run.place(1);
+  EXPECT_NEAR(place.x(), l * std::sin(s[0]) * std::cos(s[2]), 1e-6);
+  EXPECT_NEAR(place.y(), 1 + l * std::cos(s[0]), 1e-6);
+  EXPECT_NEAR(place.z(), -l * std::sin(s[0]) * std::sin(s[2]), 1e-6);
+  EXPECT_GT(s[2], 1);
+}
+
+// Foucault's pendulum in a frame that turns with W: e^(-iWt) (cos wt + i W/w sin wt)
+TEST(Lectures, FoucaultsPendulumTurnsAgainstItsFrame) {
+  const TextRun run(
+      "duration = 60\n[constants]\nW = 0.05\nl = 4\n[room]\nsize = [3, 3]\ngravity = [0, 0]\n[[particle]]\n"
+      "name = 'bob'\nposition = [2.5, 1.5]\n[[force]]\ncenter = [1.5, 1.5]\n"
+      "components = ['-9.81/l*m*dx + 2*m*W*vy + m*W^2*dx', '-9.81/l*m*dy - 2*m*W*vx + m*W^2*dy']\n");
+  const double w = std::sqrt(9.81 / 4), W = 0.05, t = 60;
+  const double a = std::cos(w * t), b = W / w * std::sin(w * t);
+  EXPECT_NEAR(run.place(t).x(), 1.5 + a * std::cos(W * t) + b * std::sin(W * t), 1e-8);
+  EXPECT_NEAR(run.place(t).y(), 1.5 - a * std::sin(W * t) + b * std::cos(W * t), 1e-8);
+}
+
+// A tunnel through the earth, in metres, kilograms and seconds: once through and back in 2 pi sqrt(R/g)
+TEST(Lectures, ATunnelThroughTheEarthTakesItsTime) {
+  const TextRun run(
+      "duration = 6000\n[room]\nsize = [1.4e7, 1.4e7]\ncorner = [-7e6, -7e6]\nwalls = 'none'\ngravity = [0, "
+      "0]\n"
+      "[physics]\nrate = 1\n[[particle]]\nposition = [6.371e6, 0]\n[[force]]\ncenter = [0, 0]\n"
+      "components = ['-9.81*m*dx/6.371e6', '-9.81*m*dy/6.371e6']\n");
+  const double w = std::sqrt(9.81 / 6.371e6);
+  EXPECT_NEAR(run.place(5000).x(), 6.371e6 * std::cos(w * 5000), 1e-3);
+}
+
+}  // namespace
+}  // namespace obscura::scene
