@@ -1,0 +1,167 @@
+// What a step of the exact solver says of itself: forces of contacts and joints, what joints are loaded
+// beyond their strength, and how watched bodies went.
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/solve/exact/exact.h"
+
+namespace obscura::sim {
+
+template <int D>
+void ExactSolver<D>::report(StepPart<D> step) {
+  outcome_.contacts.swap(step_.contacts), outcome_.impulses.swap(step_.impulses);
+  const auto sooner = [](const auto& p, const auto& q) { return p.key < q.key; };
+  std::sort(outcome_.contacts.begin(), outcome_.contacts.end(), sooner);
+
+  activate_all();
+  collect_bodies(step.state);
+  write_contacts(step.state);
+  step.state.on_piece = step_.on_piece;
+}
+
+template <int D>
+void ExactSolver<D>::write_contacts(State<D>& state) {
+  state.joint_forces = outcome_.joint_forces;
+  for (const Contact<D>& struck : outcome_.impulses) {
+    const auto at = std::lower_bound(outcome_.contacts.begin(), outcome_.contacts.end(), struck,
+                                     [](const auto& p, const auto& q) { return p.key < q.key; });
+    if (at != outcome_.contacts.end() && at->key == struck.key) {
+      at->impulse = struck.impulse;
+    } else {
+      outcome_.contacts.insert(at, struck);
+    }
+  }
+  // contacts of sleeping bodies keep their forces
+  std::size_t kept = 0;
+  for (Contact<D>& contact : state.contacts) {
+    if (response_.moves(contact.key.a) || response_.moves(contact.key.b)) continue;
+    contact.impulse.setZero();
+    state.contacts[kept++] = contact;
+  }
+  state.contacts.resize(kept);
+  state.contacts.insert(state.contacts.end(), outcome_.contacts.begin(), outcome_.contacts.end());
+  std::sort(state.contacts.begin(), state.contacts.end(),
+            [](const auto& p, const auto& q) { return p.key < q.key; });
+}
+
+// contacts and joints and their forces as they were chosen last; joints of what is frozen keep theirs
+template <int D>
+void ExactSolver<D>::record_forces() {
+  outcome_.contacts.clear(), progress_.known = &outcome_.contacts;
+  for (const int i : active_.joints) {
+    const Joint<D>& joint = model_.joints[i];
+    if (moves(joint)) outcome_.joint_forces[i].setZero();
+  }
+  record_chain_forces();
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind == Constraint::Kind::contact) continue;
+    for (int i = constraint.first; i < constraint.first + constraint.rows; ++i)
+      outcome_.joint_forces[constraint.of] += f_[i] * rows_[i].along;
+  }
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind != Constraint::Kind::contact) continue;
+    const ModeKind kind = modes_[constraint.block].kind;
+    if (kind == ModeKind::open) continue;
+    Contact<D> contact;
+    contact.key = candidates_[constraint.of].key;
+    contact.touching = kind == ModeKind::slide               ? ContactMode::slide
+                       : kind == ModeKind::at_friction_limit ? ContactMode::at_friction_limit
+                                                             : ContactMode::stick;
+    contact.point = constraint.point, contact.normal = constraint.normal, contact.gap = constraint.off;
+    for (int i = 0; i < D; ++i) contact.force += f_[constraint.first + i] * rows_[constraint.first + i].along;
+    outcome_.contacts.push_back(contact);
+  }
+}
+
+// what holds through an interval
+template <int D>
+void ExactSolver<D>::note_contacts(double begun, double ended) {
+  if (!course_) return;
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind != Constraint::Kind::contact ||
+        interval_.modes[constraint.block].kind == ModeKind::open)
+      continue;
+    const ContactKey& key = candidates_[constraint.of].key;
+    if (!course_->watches(key.a) && !course_->watches(key.b)) continue;
+    // what lets go is held until its force is a little below zero: it left where that was zero
+    double left = ended;
+    const double before = interval_.forces[constraint.first], after = f_[constraint.first];
+    if (progress_.released == key && before > 0 && after < 0)
+      left = begun + (ended - begun) * before / (before - after);
+    course_->meetings.push_back({key.a, key.b, begun, left});
+  }
+}
+
+// an interval of the bodies at hand, from interval_.begun to `state`
+template <int D>
+void ExactSolver<D>::note_motion(const State<D>& state, double begun, double ended) {
+  if (!course_) return;
+  for (const int body : active_.subset.bodies) {
+    if (!course_->watches(body) || !response_.moves(body)) continue;
+    CoursePiece<D> piece{begun, ended, {}, instant(state, body)};
+    piece.from.x = interval_.begun.x[body], piece.from.v = interval_.begun.v[body];
+    if (const int k = turning(state, body); k >= 0)
+      piece.from.turn = interval_.begun.turn[k], piece.from.spin = interval_.begun.spin[k];
+    course_->pieces[std::size_t(body)].push_back(piece);
+  }
+}
+
+// under `event`: takes away joints that are loaded beyond their strength at this instant; whether there are
+// any
+template <int D>
+bool ExactSolver<D>::break_loaded(State<D>& state, double done) {
+  scratch_.unheld.clear();
+  for (const int i : active_.joints) {
+    const Joint<D>& joint = model_.joints[i];
+    if (state.broken[i] || !moves(joint) ||
+        !(std::sqrt(outcome_.joint_forces[i].squaredNorm()) > joint.breaks))
+      continue;
+    state.broken[i] = 1;
+    joint.each_body([&](int body) {
+      if (body >= 0) scratch_.unheld.push_back(body);
+    });
+  }
+  if (scratch_.unheld.empty()) return false;
+  break_ropes(model_, state.broken);
+  for (const int i : active_.joints) {
+    const bool known = !course_ || step_.broken[i] || !state.broken[i] ||
+                       std::any_of(course_->breaks.begin(), course_->breaks.end(),
+                                   [&](const auto& it) { return it.joint == i; });
+    if (!known) course_->breaks.push_back({i, done});
+  }
+  sleep_.wake(state, scratch_.unheld);
+  collect_bodies(state);
+  return true;
+}
+
+// removes joints that are loaded beyond their strength, from the next step on, and wakes the bodies they held
+template <int D>
+void ExactSolver<D>::break_joints(State<D>& state) {
+  scratch_.unheld.clear();
+  let_go_of_wires(state);
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const Joint<D>& joint = model_.joints[i];
+    if (state.broken[i] || !(std::sqrt(state.joint_forces[i].squaredNorm()) > joint.breaks)) continue;
+    state.broken[i] = 1;
+    joint.each_body([&](int body) {
+      if (body >= 0) scratch_.unheld.push_back(body);
+    });
+  }
+  break_ropes(model_, state.broken);
+  if (!scratch_.unheld.empty()) sleep_.wake(state, scratch_.unheld);
+}
+
+#define OBSCURA_INSTANTIATE(D)                                                \
+  template void ExactSolver<D>::report(StepPart<D>);                          \
+  template void ExactSolver<D>::write_contacts(State<D>&);                    \
+  template void ExactSolver<D>::record_forces();                              \
+  template void ExactSolver<D>::note_contacts(double, double);                \
+  template void ExactSolver<D>::note_motion(const State<D>&, double, double); \
+  template bool ExactSolver<D>::break_loaded(State<D>&, double);              \
+  template void ExactSolver<D>::break_joints(State<D>&)
+OBSCURA_INSTANTIATE(2);
+OBSCURA_INSTANTIATE(3);
+#undef OBSCURA_INSTANTIATE
+
+}  // namespace obscura::sim
