@@ -29,7 +29,7 @@ constexpr std::size_t kToldSingly = 6;        // bodies, impacts: told one by on
 constexpr std::size_t kMostHappenings = 300;  // impacts that are listed
 constexpr double kSoft = 0.02;                // of sqrt(g L): slower is no impact
 constexpr double kSame = 1e-3;                // of the energy: it has not changed
-constexpr double kStill = 1e-9;               // of the room's height a second: slower does not move
+constexpr double kNoMotion = 1e-9;            // of the room's height a second: slower does not move
 constexpr double kNothing = 1e-30, kSmall = 1e-4, kLarge = 1e6;  // numbers that are told as 0, with a power
 
 // three digits that count; of what is very small or large with a power of ten: 2.5e-6
@@ -92,7 +92,7 @@ std::string wall(const sim::SceneInfo& cast, int index) {
 // "at 3 m/s to the right and up"
 std::string motion(const sim::Vec3& v, const sim::SceneInfo& cast) {
   const int dimension = cast.dimension;
-  const double speed = v.norm() > kStill * cast.scale ? v.norm() : 0;
+  const double speed = v.norm() > kNoMotion * cast.scale ? v.norm() : 0;
   std::vector<std::string> way;
   if (dimension == 2 && std::abs(v.x()) > 0.3 * speed)
     way.emplace_back(v.x() > 0 ? "to the right" : "to the left");
@@ -279,7 +279,7 @@ std::vector<std::string> Account::beginning() const {
   if (bodies.size() > kToldSingly) {
     std::size_t resting = 0;
     for (const int body : bodies)
-      resting += !(first_->bodies[std::size_t(body)].velocity.norm() > kStill * cast_.scale);
+      resting += !(first_->bodies[std::size_t(body)].velocity.norm() > kNoMotion * cast_.scale);
     if (resting == bodies.size()) all.emplace_back("All start without velocity.");
     return all;
   }
@@ -287,7 +287,7 @@ std::vector<std::string> Account::beginning() const {
     const sim::Snapshot::Body& it = first_->bodies[std::size_t(body)];
     all.push_back(capital(
         fmt::format("{} starts at {}, {}.", called(cast_, body), whereabouts(it.position, cast_),
-                    it.velocity.norm() > kStill * cast_.scale ? motion(it.velocity, cast_)
+                    it.velocity.norm() > kNoMotion * cast_.scale ? motion(it.velocity, cast_)
                     : it.spin.norm() > 1e-9 ? fmt::format("turning at {} rad/s", numeral(it.spin.norm()))
                                             : std::string("at rest"))));
   }
@@ -511,7 +511,7 @@ std::string instant_text(const sim::SceneInfo& cast, const sim::Snapshot& now) {
   for (const int body : bodies) {
     const sim::Snapshot::Body& it = now.bodies[std::size_t(body)];
     add(capital(fmt::format("{} is at {} and {}.", called(cast, body), whereabouts(it.position, cast),
-                            it.velocity.norm() > kStill * cast.scale ? "moves " + motion(it.velocity, cast)
+                            it.velocity.norm() > kNoMotion * cast.scale ? "moves " + motion(it.velocity, cast)
                                                                      : std::string("does not move"))));
   }
   return all;
