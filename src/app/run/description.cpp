@@ -512,7 +512,7 @@ std::string instant_text(const sim::SceneInfo& cast, const sim::Snapshot& now) {
     const sim::Snapshot::Body& it = now.bodies[std::size_t(body)];
     add(capital(fmt::format("{} is at {} and {}.", called(cast, body), whereabouts(it.position, cast),
                             it.velocity.norm() > kNoMotion * cast.scale ? "moves " + motion(it.velocity, cast)
-                                                                     : std::string("does not move"))));
+                                                                        : std::string("does not move"))));
   }
   return all;
 }
