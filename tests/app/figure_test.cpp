@@ -217,7 +217,7 @@ TEST_F(Figure, SeveralInstantsAndValuesArePanelsWithLetters) {
   scene(kMarked);
   ASSERT_EQ(obscura("figure scene.toml -o a.svg --at 0,0.2 --vary crate.elasticity=0,1 --columns 2").exit, 0);
   const std::string svg = contents(path("a.svg"));
-  for (const char* words : {"(a)", "(d)", "elasticity = 0, t = 0.2 s", "elasticity = 1, t = 0 s"})
+  for (const char* words : {"(a)", "(d)", "e = 0, t = 0.2 s", "e = 1, t = 0 s"})
     EXPECT_THAT(written(svg), HasSubstr(words));
 }
 
