@@ -254,7 +254,7 @@ TEST_F(Render, BadInputGetsOneLineAndItsCodeAndWritesNothing) {
       {"render scene.toml --transparent -o x.mp4", 2},
       {"render missing.toml", 3},
       {"render scene.toml --set nonsense.key=1", 3},
-      {"render scene.toml -o x.xyz", 4},
+      {"render scene.toml -o x.xyz", 2},
       {"render scene.toml --size 101x75 -o x.mp4", 4},
       {"render scene.toml --codec nonsense -o x.mp4", 4},
       {"render scene.toml -o /proc/x/y.mp4", 4},
