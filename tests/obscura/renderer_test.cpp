@@ -214,7 +214,7 @@ TEST_F(Films, PagesFiguresAndWrongOptionsAreThoseOfTheCommands) {
   EXPECT_THROW(Renderer(scene, {.fps = "often"}), UsageError);
   EXPECT_THROW(Renderer(scene, {.theme = "pink"}), UsageError);
   EXPECT_THROW(Renderer(scene, {.width = -1}), UsageError);
-  EXPECT_THROW(film(scene, path("a.avi"), kSmall), FileError);
+  EXPECT_THROW(film(scene, path("a.avi"), kSmall), UsageError);
 }
 
 }  // namespace
