@@ -158,6 +158,7 @@ std::string listed(const sim::SceneInfo& cast) {
 struct Impact {
   double time = 0, speed = 0;  // s, m/s: along the normal, before
   int body = -1, other = -1, wall = -1;
+  double seen = 0;  // s, the end of its step: of the first state after it
 };
 
 /// Reads a run instant by instant.
@@ -242,7 +243,7 @@ void Account::read(const sim::Snapshot& now) {
     const bool struck = each.impulse.dot(each.normal) > 0 || !touching_.contains(pair);
     if (!struck || !(speed > soft_)) continue;
     Impact& impact = met[pair];
-    if (speed > impact.speed) impact = {last_->time + tau, speed, each.body, each.other, each.wall};
+    if (speed > impact.speed) impact = {last_->time + tau, speed, each.body, each.other, each.wall, now.time};
   }
   for (const auto& [pair, impact] : met)
     if (!touching_.contains(pair) || impact.speed > 4 * soft_) impacts_.push_back(impact);
@@ -416,7 +417,7 @@ std::vector<Happening> Account::happenings() const {
   }
   std::vector<Happening> all;
   for (const Impact* each : impacts)
-    all.push_back({each->time, fmt::format("{} hits {}, closing at {} m/s", called(cast_, each->body),
+    all.push_back({each->seen, fmt::format("{} hits {}, closing at {} m/s", called(cast_, each->body),
                                            other(*each), numeral(each->speed))});
   for (const auto& [at, joint] : broken_) all.push_back({at, parting(joint)});
   return all;
