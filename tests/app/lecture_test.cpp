@@ -193,6 +193,14 @@ const std::vector<Feature>& features() {
                "motor = { position = '0.2*sin(4*t)', most = 9 }\nspring = { stiffness = 3, damping = 0.2 }\n",
        "axle.motor.most=0.1",
        {kIterative, kEvent}},
+      {"gears_in_space",
+       kDeep +
+           "[[ball]]\nname = 'a'\nradius = 0.2\nposition = [-0.3, 1, 0]\n[[ball]]\nname = 'b'\nradius = 0.4\n"
+           "position = [0.3, 1, 0]\n[[joint]]\nname = 'p'\ntype = 'hinge'\nbetween = ['a', 'room']\n"
+           "motor = { speed = '90*t', most = 1 }\n[[joint]]\nname = 'q'\ntype = 'hinge'\n"
+           "between = ['b', 'room']\n[[joint]]\ntype = 'gear'\njoints = ['p', 'q']\nratio = -2\n",
+       "p.motor.most=0.001",
+       {kIterative}},
       {"rail_in_space",
        kDeep + "[[ball]]\nname = 'ball'\nradius = 0.1\nposition = [-1, 1.62, 0]\n[[track]]\nname = 'left'\n"
                "points = [[-1.2, 1.6, 0.06], [1.5, 0.6, 0.06]]\n[[track]]\nname = 'right'\n"
