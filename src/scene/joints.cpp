@@ -206,6 +206,12 @@ class Joining {
     }
     it.friction = fields_.number("friction");
     if (const Node* breaks = fields_.given("breaks")) it.breaks = breaks->number();
+    if (const Node* breaks = fields_.given("breaks_torque")) {
+      if (kind_ == JointKind::rod || kind_ == JointKind::rope || kind_ == JointKind::wire)
+        return refuse(breaks->place, fmt::format("a {} bears no torque; 'breaks' is the force that breaks it",
+                                                 fields_.given("type")->text()));
+      it.breaks_torque = breaks->number();
+    }
     it.touching = fields_.flag("touching");
     return it;
   }

@@ -308,6 +308,8 @@ std::vector<Key> rows() {
        .doc = "Dry friction: the largest torque (N m) of a pin, or force (N) of a slider, against its motion.", .example = "0.1"},
       {.path = "joint.breaks", .form = number, .unit = "N", .absent = "never", .range = kPositive,
        .doc = "The force above which it breaks. A jerk is an impulse, not a force: the direct solver lets it pass, the iterative one takes its mean over the step.", .example = "50"},
+      {.path = "joint.breaks_torque", .form = number, .unit = "N m", .absent = "never", .range = kPositive,
+       .doc = "The torque above which it breaks: that of a weld, and of a pin's motor, spring, limits and friction, about the place of its first end; of a gear that on the first joint's body.", .example = "2"},
       {.path = "joint.touching", .form = boolean, .fallback = "false",
        .doc = "Whether the two bodies may touch each other.", .example = "true"},
 
@@ -646,7 +648,7 @@ std::vector<Key> rows() {
       {.path = "mark.vector", .form = tables, .doc = "An arrow with the length of a value of the run; each kind has one scale, given in the legend."},
       {.path = "mark.vector.quantity", .form = choice, .fallback = "\"position\"",
        .choices = draw::arrows(),
-       .doc = "The quantity: `position` goes from `at` to `to`; `contact` is `normal_force` plus `friction`, one arrow for each thing touched; `spring_force` (with damping; `spring`: without), `joint_force`: one for each spring, joint; `net_force`: the sum of all; `blast`: of explosions; `spin` and `torque` are arcs.", .example = "\"velocity\""},
+       .doc = "The quantity: `position` goes from `at` to `to`; `contact` is `normal_force` plus `friction`, one arrow for each thing touched; `spring_force` (with damping; `spring`: without), `joint_force`: one for each spring, joint; `net_force`: the sum of all; `blast`: of explosions; `spin`, `torque` (of all that acts on the body, about its centre) and `joint_torque` (of each joint, about its place) are arcs.", .example = "\"velocity\""},
       {.path = "mark.vector.of", .form = thing, .absent = "none: a `position` between places", .doc = "The body it belongs to.", .example = "\"crate\""},
       {.path = "mark.vector.at", .form = place, .absent = "the body's centre; of a `position`, the origin; of a contact, where it is",
        .doc = "Where it begins; for a velocity, the point that has it.", .example = "{ body = \"crate\", at = \"top\" }"},

@@ -167,6 +167,8 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
   int rope = 0;
   for (const sim::Joint<D>& joint : world.model.joints) rope = std::max(rope, joint.rope + 1);
 
+  if (const Node* breaks = fields.given("breaks_torque"))
+    complaints.add(breaks->place, "a pulley's rope bears no torque; 'breaks' is the force that breaks it");
   std::vector<sim::Joint<D>> pieces;
   for (int first = 0; first + 1 < n;) {
     int last = first + 1;
@@ -275,6 +277,7 @@ void gear(const Fields& fields, const std::string& name, sim::World<D>& world, D
   sim::Joint<D> it;
   it.name = name, it.kind = JointKind::gear, it.ratio = ratio->number();
   it.breaks = given_breaks<D>(fields), it.touching = fields.flag("touching");
+  if (const Node* breaks = fields.given("breaks_torque")) it.breaks_torque = breaks->number();
   it.a = both[0].a, it.b = both[0].b, it.over = {both[1].a, both[1].b};
   it.geared = std::make_shared<const std::array<sim::Joint<D>, 2>>(both);
   const double n = it.ratio;
@@ -317,7 +320,7 @@ void gear(const Fields& fields, const std::string& name, sim::World<D>& world, D
       complaints.add(
           breaks->place,
           fmt::format("both joints turn about one place{}, so it has no teeth whose force could break "
-                      "it; give a 'breaks' to what holds the wheels",
+                      "it; 'breaks_torque' is the torque that does",
                       n == 1 && far > 0 ? ", as one wheel does" : ""));
   } else if (!(slides[0] && slides[1])) {
     // of a rack the way from its teeth to itself: a pinion that turns to the left moves it to the left of

@@ -45,6 +45,7 @@ constexpr Quantity kQuantities[] = {
     {"spring_force", sim::Reading::Of::spring_force},
     {"joint_force", sim::Reading::Of::joint_force},
     {"force", sim::Reading::Of::force},
+    {"torque", sim::Reading::Of::torque},
 };
 
 bool in_word(char c) {
@@ -162,6 +163,12 @@ class WhenBuilder {
                       when.name, count == 0 ? "none" : "several"));
       return;
     }
+    if (!model_.bonds.empty() && model_.collision == sim::Collision::event && !fields.given("time"))
+      complaints_.add(
+          one->place,
+          "under \"event\" a condition is found at its exact time, but in a scene with [[bond]]s only "
+          "at the end of a step: write collision = \"contact\", or for the bond a [[joint]] of type "
+          "\"weld\" with 'breaks'");
     if (const Node* it = fields.given("touches")) when.on = On::touches, pairs(*it, "touches", when);
     if (const Node* it = fields.given("leaves")) when.on = On::leaves, pairs(*it, "leaves", when);
     if (const Node* it = fields.given("crosses")) when.on = On::crosses, gate(*it, when);
@@ -305,12 +312,13 @@ class WhenBuilder {
                                         scene::quoted(model_.joints[std::size_t(held[0])].name)));
             return;
           }
-          if (quantity != "force") {
-            refused.push_back({word, -1, "is not what conditions read of a joint: force"});
+          if (quantity != "force" && quantity != "torque") {
+            refused.push_back({word, -1, "is not what conditions read of a joint: force and torque"});
             break;
           }
           words.push_back(word);
-          when.reads.push_back({held[0], sim::Reading::Of::force});
+          when.reads.push_back(
+              {held[0], quantity == "force" ? sim::Reading::Of::force : sim::Reading::Of::torque});
           break;
         }
         const std::vector<int> found = roster_.bodies(name, node.place, complaints_);
@@ -357,7 +365,8 @@ class WhenBuilder {
                     : "is not what conditions read: x, y, z, vx, vy, vz, speed, spin, contact, "
                       "normal_force, friction, spring_force and joint_force";
     using enum sim::Reading::Of;
-    if (found->of == force) return "is of a joint, and this is a body; joint_force is what joints give it";
+    if (found->of == force || found->of == torque)
+      return "is of a joint, and this is a body; joint_force is what joints give it";
     if (D == 2 && (found->of == z || found->of == vz)) return "is of space, and this scene is in the plane";
     if (D == 3 && found->of == angle) return "is of the plane, and this scene is in space";
     if ((found->of == angle || found->of == spin) && !model_.bodies[std::size_t(body)].turns())
@@ -375,7 +384,8 @@ class WhenBuilder {
     }
     const bool may = std::any_of(when.those.begin(), when.those.end(), [&](int of) {
       return of < 0 ? model_.bonds[std::size_t(-1 - of)].strength < 1e299
-                    : model_.joints[std::size_t(of)].breaks < 1e299;
+                    : model_.joints[std::size_t(of)].breaks < 1e299 ||
+                          model_.joints[std::size_t(of)].breaks_torque < 1e299;
     });
     if (!may && !parted(when.those))
       complaints_.add(node.place, fmt::format("{} never breaks: give it a 'breaks', the force that it bears",

@@ -97,7 +97,8 @@ std::string json(const sim::Snapshot& now, const sim::SceneInfo& cast, const std
       number(now.time), now.step, hash, number(e.kinetic), number(e.potential()), number(e.gravity),
       number(e.springs), number(e.total()), number(e.displacement), number(e.impacts),
       cast.mice.empty() ? "" : fmt::format(", \"hand\": {}", number(e.hand)),
-      cast.forces ? fmt::format(", \"fields\": {}, \"work\": {}", number(e.fields), number(e.work)) : "",
+      (cast.forces ? fmt::format(", \"fields\": {}", number(e.fields)) : "") +
+          (cast.books_work ? fmt::format(", \"work\": {}", number(e.work)) : ""),
       vector(now.momentum, d), spin(now.angular_momentum, d));
   for (std::size_t i = 0; i < now.bodies.size(); ++i) {
     const auto& body = now.bodies[i];
@@ -127,9 +128,10 @@ std::string json(const sim::Snapshot& now, const sim::SceneInfo& cast, const std
   text += "],\n     \"joints\": [";
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
     const auto& joint = now.joints[i];
-    text += fmt::format("{}\n       {{\"name\": {}, \"a\": {}, \"b\": {}, \"force\": {}, \"broken\": {}}}",
-                        i ? "," : "", quoted(cast.joints[i].name), vector(joint.a, d), vector(joint.b, d),
-                        vector(joint.force, d), joint.broken);
+    text += fmt::format(
+        "{}\n       {{\"name\": {}, \"a\": {}, \"b\": {}, \"force\": {}, \"torque\": {}, \"broken\": {}}}",
+        i ? "," : "", quoted(cast.joints[i].name), vector(joint.a, d), vector(joint.b, d),
+        vector(joint.force, d), spin(joint.torque, d), joint.broken);
   }
   return text + "]}";
 }

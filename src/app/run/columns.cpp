@@ -38,10 +38,8 @@ std::vector<Column> columns(const sim::SceneInfo& cast, const std::vector<Eigen:
   list.number("energy.kinetic", [](Now now) { return now.energies.kinetic; });
   list.number("energy.potential", [](Now now) { return now.energies.potential(); });
   list.number("energy.total", [](Now now) { return now.energies.total(); });
-  if (cast.forces) {
-    list.number("energy.fields", [](Now now) { return now.energies.fields; });
-    list.number("energy.work", [](Now now) { return now.energies.work; });
-  }
+  if (cast.forces) list.number("energy.fields", [](Now now) { return now.energies.fields; });
+  if (cast.books_work) list.number("energy.work", [](Now now) { return now.energies.work; });
   if (!cast.mice.empty()) list.number("energy.hand", [](Now now) { return now.energies.hand; });
   list.number("energy.displacement", [](Now now) { return now.energies.displacement; });
   list.number("energy.impacts", [](Now now) { return now.energies.impacts; });
@@ -62,9 +60,11 @@ std::vector<Column> columns(const sim::SceneInfo& cast, const std::vector<Eigen:
     list.vector(name + ".velocity", [i](Now now) -> const sim::Vec3& { return now.bodies[i].velocity; });
     list.turning(name + ".spin", [i](Now now) -> const sim::Vec3& { return now.bodies[i].spin; });
   }
-  for (std::size_t i = 0; i < cast.joints.size(); ++i)
-    list.vector(cast.joints[i].name + ".force",
-                [i](Now now) -> const sim::Vec3& { return now.joints[i].force; });
+  for (std::size_t i = 0; i < cast.joints.size(); ++i) {
+    const std::string& name = cast.joints[i].name;
+    list.vector(name + ".force", [i](Now now) -> const sim::Vec3& { return now.joints[i].force; });
+    list.turning(name + ".torque", [i](Now now) -> const sim::Vec3& { return now.joints[i].torque; });
+  }
   return std::move(list.all);
 }
 

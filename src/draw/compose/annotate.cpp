@@ -247,7 +247,7 @@ void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
     const WordKey key{WordKey::vector, index, reading.part};
     const std::string label = as_vector(vector.label);
     const auto set = [&](double value) { return this->set(key, label, value, unit(vector.quantity), ink); };
-    if (vector.quantity == Quantity::spin || vector.quantity == Quantity::torque) {
+    if (turns(vector.quantity)) {
       turn(key, vector, reading, set(reading.signed_value), ink);
       continue;
     }

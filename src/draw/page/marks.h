@@ -42,7 +42,8 @@ enum class Quantity {
   blast,
   normal,
   spin,
-  torque
+  torque,
+  joint_torque
 };
 
 /// An instant of the run, and perhaps some seconds of the film after it.

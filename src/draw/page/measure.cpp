@@ -100,6 +100,11 @@ constexpr std::array kMeasures{
              const sim::Vec3 all = sum(Quantity::torque, body, cast, now);
              return cast.dimension == 2 ? all.z() : all.norm();
            }),
+    vector("joint_torque", "\\tau", "N m", "", Quantity::joint_torque,
+           [](Cast cast, Now now, int body) {
+             const sim::Vec3 all = sum(Quantity::joint_torque, body, cast, now);
+             return cast.dimension == 2 ? all.z() : all.norm();
+           }),
     vector("position", "r", "m", "blue", Quantity::position, nullptr),
     vector("velocity", "v", "m/s", "green", Quantity::velocity, nullptr),
     vector("spring", "spring", "N", "green", Quantity::spring, nullptr),

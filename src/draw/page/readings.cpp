@@ -100,9 +100,8 @@ Vec3 net_force(const sim::SceneInfo& cast, const sim::Snapshot& now, int body) {
   const sim::SceneInfo::Body& its = cast.bodies[std::size_t(body)];
   if (its.fixed) return Vec3::Zero();
   const sim::Snapshot::Body& it = now.bodies[std::size_t(body)];
-  Vec3 sum = its.mass * cast.gravity + it.drag + it.field + it.blast;
-  sum += total(touches(now, body, Quantity::contact)) + total(pulls(cast, now, body, true)) +
-         total(held(cast, now, body));
+  Vec3 sum = its.mass * cast.gravity + it.drag + it.field + it.blast + it.held;
+  sum += total(touches(now, body, Quantity::contact)) + total(pulls(cast, now, body, true));
   for (const sim::Snapshot::Mouse& mouse : now.mice)
     if (mouse.body == body) sum += mouse.force;
   return sum;
@@ -143,6 +142,17 @@ std::vector<Reading> readings(const Marks::Vector& vector, const sim::SceneInfo&
       return pulls(cast, now, vector.body, vector.quantity == Quantity::spring_force);
     case Quantity::joint_force:
       return held(cast, now, vector.body);
+    case Quantity::joint_torque: {
+      std::vector<Reading> found = held(cast, now, vector.body);
+      for (Reading& each : found) {
+        const std::size_t joint = std::size_t(each.part);
+        const double sign = cast.joints[joint].a == vector.body ? 1 : -1;
+        each.value = sign * now.joints[joint].torque;
+        each.signed_value = cast.dimension == 2 ? each.value.z() : each.value.norm();
+      }
+      std::erase_if(found, [](const Reading& each) { return each.value.isZero(0); });
+      return found;
+    }
     case Quantity::contact:
     case Quantity::normal_force:
     case Quantity::friction:
@@ -154,10 +164,12 @@ std::vector<Reading> readings(const Marks::Vector& vector, const sim::SceneInfo&
     case Quantity::spin:
       return {turning(cast, body.position, body.spin)};
     case Quantity::torque: {
-      Vec3 torque = Vec3::Zero();
+      Vec3 torque = body.torque;
       for (const auto& all :
-           {pulls(cast, now, vector.body, false), touches(now, vector.body, Quantity::contact)})
+           {pulls(cast, now, vector.body, true), touches(now, vector.body, Quantity::contact)})
         for (const Reading& each : all) torque += (each.tail - body.position).cross(each.value);
+      for (const sim::Snapshot::Mouse& mouse : now.mice)
+        if (mouse.body == vector.body) torque += (mouse.held - body.position).cross(mouse.force);
       return {turning(cast, body.position, torque)};
     }
     case Quantity::position:
@@ -189,6 +201,7 @@ std::string_view unit(Quantity quantity) {
     case Quantity::spin:
       return "rad/s";
     case Quantity::torque:
+    case Quantity::joint_torque:
       return "N m";
     default:
       return "N";
@@ -201,6 +214,7 @@ double* scale_of(Quantity quantity, Scales& scales) {
     case Quantity::normal:
     case Quantity::spin:
     case Quantity::torque:
+    case Quantity::joint_torque:
       return nullptr;
     case Quantity::velocity:
       return &scales.velocity;
@@ -230,6 +244,7 @@ Color color_of(const Marks::Vector& vector, const Palette& colours) {
     case Quantity::normal:
     case Quantity::spin:
     case Quantity::torque:
+    case Quantity::joint_torque:
       return colours.ink;
     default:
       return mix(colours.force, colours.ink, 0.12);

@@ -24,6 +24,11 @@ sim::Vec3 sum(Quantity quantity, int body, const sim::SceneInfo& cast, const sim
 
 std::string_view unit(Quantity quantity);
 
+/// Whether it turns: its readings are arcs.
+constexpr bool turns(Quantity quantity) {
+  return quantity == Quantity::spin || quantity == Quantity::torque || quantity == Quantity::joint_torque;
+}
+
 /// How long arrows are, one scale a kind for a whole page: m a unit. 0: none is drawn.
 struct Scales {
   double velocity = 0;      // m/s

@@ -105,7 +105,7 @@ void DivergenceMonitor<D>::start(State<D>& state, double t) const {
   for (const Body<D>& body : model_.bodies) {
     if (!body.fixed) energy_budget += body.mass * (g * model_.scale + fastest * fastest);
   }
-  state.energy_budget = {e.gravity + e.fields - e.work + state.ledger.displacement, energy_budget};
+  state.energy_budget = {e.gravity + e.fields + state.ledger.displacement, energy_budget, e.work};
 }
 
 template <int D>
@@ -115,7 +115,8 @@ std::optional<Trouble> DivergenceMonitor<D>::check_energy(const State<D>& state,
   const double pushed = too_long_.empty() ? std::max(0.0, state.ledger.displacement) : 0;
   const double energy_budget = state.energy_budget.amount + pushed;
   const double held = e.kinetic + e.springs + e.hand + e.gravity + e.fields - state.energy_budget.level;
-  const double now = held - e.work;
+  // what drag takes, hands and motors give again and again
+  const double now = held - std::max(0.0, e.work - state.energy_budget.work);
   if (std::max(now, held) <= kSuspect * energy_budget) return {};
   // nor is then that of forces
   const Tightness worst = tightest(model_, state.grips);

@@ -19,7 +19,6 @@ constexpr double kGauss = 0.21132486540518713;  // 1/2 - 1/(2 sqrt 3)
 
 template <int D>
 WorkBooks<D>::WorkBooks(const Model<D>& model) : model_(model), forces_(model) {
-  if (!forces_.any()) return;
   for (const Body<D>& body : model.bodies) drag_ = drag_ || body.drag != 0;
   any_ = drag_;
   for (const Force<D>& force : model.forces) any_ = any_ || force.does_work();
@@ -28,7 +27,9 @@ WorkBooks<D>::WorkBooks(const Model<D>& model) : model_(model), forces_(model) {
 template <int D>
 void WorkBooks<D>::open(const State<D>& state) {
   if (!any_) return;
-  x_ = state.x, v_ = state.v, turn_ = state.turn, spin_ = state.spin;
+  x_ = state.x, v_ = state.v;
+  if (!forces_.any()) return;
+  turn_ = state.turn, spin_ = state.spin;
   if (gathered_) return;
   forces_.gather(state);
   gathered_ = true;
@@ -38,6 +39,10 @@ template <int D>
 void WorkBooks<D>::close(State<D>& state, double t, double h) {
   if (!any_ || !(h > 0)) return;
   const int n = int(state.x.size()), still = n - int(state.turn.size());
+  if (!forces_.any()) {
+    state.work[0] -= h * dragged(state, h);
+    return;
+  }
   if (forces_.flying().all()) {
     const std::size_t size = std::size_t(D * n);
     flat_.resize(4 * size);
@@ -83,6 +88,23 @@ void WorkBooks<D>::close(State<D>& state, double t, double h) {
     sum += 0.5 * h * power;
   }
   state.work[0] += sum;
+}
+
+// what drag alone takes, the mean through the step, W
+template <int D>
+double WorkBooks<D>::dragged(const State<D>& state, double h) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    const Body<D>& body = model_.bodies[i];
+    if (body.drag == 0 || body.fixed) continue;
+    for (const double s : {kGauss, 1 - kGauss}) {
+      const double r = 1 - s;
+      const Vec<D> v =
+          6 * s * r / h * (state.x[i] - x_[i]) + r * (1 - 3 * s) * v_[i] + s * (3 * s - 2) * state.v[i];
+      sum += 0.5 * body.drag * v.squaredNorm();
+    }
+  }
+  return sum;
 }
 
 template class WorkBooks<2>;

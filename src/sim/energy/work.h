@@ -21,6 +21,8 @@ class WorkBooks {
   void close(State<D>& state, double t, double h);
 
  private:
+  double dragged(const State<D>& state, double h) const;
+
   const Model<D>& model_;
   Forces<D> forces_;
   bool any_ = false, drag_ = false, gathered_ = false;

@@ -154,8 +154,9 @@ struct Joint {
   double friction = 0;    // dry: the largest torque (N m) of a hinge or force (N) of a slider; of a wire
                           // Coulomb's mu
   double breaks = 1e300;  // N: a larger force on the joint breaks it
-  bool touching = false;  // whether the two bodies may touch each other
-  bool linked = false;    // a chain holds it: of its own it has limits, a motor and friction
+  double breaks_torque = 1e300;  // N m: so does a larger torque, about the place of a
+  bool touching = false;         // whether the two bodies may touch each other
+  bool linked = false;           // a chain holds it: of its own it has limits, a motor and friction
 
   // a pulley: the points that its rope slides over, from a to b. A gear: the ends of its second joint
   std::vector<End<D>> over;
@@ -359,7 +360,8 @@ struct Reading {
     friction,
     spring_force,
     joint_force,
-    force  // of a joint
+    force,  // of a joint
+    torque
   };
   int body = -1;  // or joint
   Of of = Of::x;
@@ -438,10 +440,11 @@ struct Model {
   std::vector<Change<D>> changes;           // that they make
   bool changed = false;                     // whether events may change what this model is
 
-  /// Whether the books have a place for work: of forces, and of bodies that are moved.
+  /// Whether the books have a place for work: of forces and drag, of bodies that are moved, of motors.
   bool books_work() const {
     bool any = !forces.empty() || !drives.empty() || changed;
-    for (const Body<D>& body : bodies) any = any || body.carries();
+    for (const Body<D>& body : bodies) any = any || body.carries() || body.drag != 0 || body.ground_drag != 0;
+    for (const Joint<D>& joint : joints) any = any || joint.motor;
     return any;
   }
 

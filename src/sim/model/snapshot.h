@@ -81,7 +81,8 @@ struct SceneInfo {
   std::vector<Mouse> mice;
   std::vector<Joint> joints;
   std::vector<Rail> rails;
-  bool forces = false;  // beside gravity, drag, springs and explosions
+  bool forces = false;      // beside gravity, drag, springs and explosions
+  bool books_work = false;  // Energies::work is kept
 };
 
 struct Energies {
@@ -100,11 +101,13 @@ struct Snapshot {
     Vec3 velocity = Vec3::Zero();
     Vec3 spin = Vec3::Zero();  // rad/s; in the plane (0, 0, w)
     Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-    double angle = 0;           // plane: rad, not wrapped
-    bool at_rest = false;       // frozen: steps leave it alone
-    Vec3 blast = Vec3::Zero();  // what explosions push it with, N
-    Vec3 drag = Vec3::Zero();   // of the air, and of the ground, N
-    Vec3 field = Vec3::Zero();  // the sum of all other forces of the scene: formulas, attraction, charges, N
+    double angle = 0;            // plane: rad, not wrapped
+    bool at_rest = false;        // frozen: steps leave it alone
+    Vec3 blast = Vec3::Zero();   // what explosions push it with, N
+    Vec3 drag = Vec3::Zero();    // of the air, and of the ground, N
+    Vec3 field = Vec3::Zero();   // the sum of all other forces of the scene: formulas, attraction, charges, N
+    Vec3 held = Vec3::Zero();    // of all joints, N
+    Vec3 torque = Vec3::Zero();  // of joints, explosions and forces of the scene about its centre, N m
     double kinetic = 0, gravity = 0;  // its parts of the energies, J; of what does not move none
   };
   struct Spring {
@@ -123,6 +126,7 @@ struct Snapshot {
   struct Joint {
     Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // where its ends are
     Vec3 force = Vec3::Zero();                // on its a, N
+    Vec3 torque = Vec3::Zero();               // on its a about its place, N m
     bool broken = false;
   };
   struct Contact {

@@ -54,6 +54,7 @@ struct Ledger {
 struct EnergyBudget {
   double level = 0;   // gravity's potential at the start, J
   double amount = 0;  // energy that could be there, J
+  double work = 0;    // what the books had then, J
 
   bool operator==(const EnergyBudget&) const = default;
 };
@@ -123,8 +124,8 @@ struct State {
   std::vector<BodySpin<D>> body_spin;    // in space: one a body that turns
   std::vector<Blast<D>> blasts;          // one an explosion
   std::vector<ChainState> chain_states;  // one a chain of the model
-  std::vector<double> work;    // of a model that books it one number: what forces without a potential and
-                               // bodies that are moved did, J
+  std::vector<double> work;    // of a model that books it one number: what forces without a potential, drag,
+                               // motors and bodies that are moved did, J
   std::vector<char> released;  // one a drive: whether its body has been let go
   EventLog events;             // of a model with conditions
   std::vector<int> on_piece;   // of a model with wires one a joint: the piece of the wire that its a is on
@@ -140,6 +141,8 @@ struct State {
   std::vector<double> quiet;         // one a body: sleep timer, how long it has been still, s
   std::vector<char> broken;          // one a joint
   std::vector<Vec<D>> joint_forces;  // one a joint: on its a, N
+  // and the torque on it about its place, N m; the hash does without, as all is said by the rest
+  std::vector<AngularVec<D>> joint_torques;
 
   bool operator==(const State&) const = default;
 };

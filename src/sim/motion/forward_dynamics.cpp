@@ -42,9 +42,10 @@ ForwardDynamics<D>::ForwardDynamics(const Model<D>& model, const std::vector<Pat
   ever_ = !model.springs.empty() || !model.mice.empty() || !model.explosions.empty() || !model.chains.empty();
   for (std::size_t i = 0; i < model.joints.size(); ++i)
     if (model.joints[i].coil) sprung_.push_back(int(i)), ever_ = true;
+  for (const Joint<D>& joint : model.joints) books_ = books_ || joint.motor;
   for (const Body<D>& body : model.bodies) {
     ever_ = ever_ || body.ground_drag != 0;
-    books_ = books_ || body.carries();
+    books_ = books_ || body.carries() || body.ground_drag != 0;
   }
   driven_.resize(std::size_t(drives_.size()));
   only_forces_ = !ever_;
@@ -367,7 +368,7 @@ double ForwardDynamics<D>::push_joint(const JointTie& tie, std::span<double> v_r
   free_row(joint, a, b, AngularVec<D>(rounds_of(tie.a) - rounds_of(tie.b)), row, c);
   const double of_a = row.along.dot(a.v) + row.angular_a.dot(a.w),
                of_b = row.along.dot(b.v) + row.angular_b.dot(b.w);
-  const double f = -joint.coil->stiffness * (c - joint.coil->rest) - joint.coil->damping * (of_a - of_b);
+  const double f = coil_force(joint, row, c, a, b);
   if (tie.a.member >= 0) push(tie.a.member, Wrench<D>{row.angular_a, row.along} * f, v_rate);
   if (tie.b.member >= 0) push(tie.b.member, Wrench<D>{row.angular_b, row.along} * -f, v_rate);
   return (tie.b.drive >= 0 ? f * of_b : 0) - (tie.a.drive >= 0 ? f * of_a : 0);
@@ -430,7 +431,7 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
   }
 
   for (int i = 0; i < drives_.size(); ++i) driven_[std::size_t(i)] = drives_.at(i, t);
-  double power = 0;  // of bodies that are moved
+  double power = 0;  // of bodies that are moved, and of drag along the ground
   for (const Tie& tie : ties_) {
     const Moving a = moving(tie.a, t), b = moving(tie.b, t);
     const Vec<D> force = pull<D>(tie.law, a.place, a.velocity, b.place, b.velocity);
@@ -454,6 +455,7 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
   for (const Braked& it : braked_) {
     const Vec<D>& speed = stances_[it.member].v;
     const Vec<D> rate = it.rate * (speed - it.normal * it.normal.dot(speed));
+    power -= model_.bodies[all_[std::size_t(it.member)]].mass * rate.dot(speed);
     if (it.member < n)
       Eigen::Map<Vec<D>>(v_rate.data() + D * it.member) -= rate;
     else

@@ -202,15 +202,22 @@ void Articulated<D>::rates(std::span<const double> d, std::span<const double> v,
 }
 
 template <int D>
-void Articulated<D>::joint_forces(std::vector<Vec<D>>& forces) {
+void Articulated<D>::joint_loads(std::vector<Wrench<D>>& loads) {
   for (Tree& tree : trees_) {
     if (!tree.awake) continue;
     accelerate<D>(tree.chain(), tree.stance, tree.v, tree.tau, model_.gravity, tree.dynamics, tree.rate);
     for (int i = 0; i < tree.chain().size(); ++i) {
       const int joint = tree.of->joints[i];
       if (joint < 0) continue;
-      const Vec<D> force = joint_wrench(tree.chain(), tree.stance, tree.dynamics, i).f;
-      forces[joint] = model_.joints[joint].a.body == tree.of->bodies[i] ? force : Vec<D>(-force);
+      const Joint<D>& its = model_.joints[std::size_t(joint)];
+      const bool is_a = its.a.body == tree.of->bodies[std::size_t(i)];
+      const Wrench<D> on_link = joint_wrench(tree.chain(), tree.stance, tree.dynamics, i);
+      const Wrench<D> on_a = is_a ? on_link : on_link * -1;
+      // from the link's origin to the place of a
+      const int a = is_a ? i : tree.chain()[i].parent;
+      const BodyMotion<D> at = a < 0 ? BodyMotion<D>() : standing(tree.chain(), tree.stance, a);
+      const Vec<D> arm = at.x + at.arm(its.a.local) - tree.stance.joint[i].place;
+      loads[std::size_t(joint)] = {AngularVec<D>(on_a.n - moment<D>(arm, on_a.f)), on_a.f};
     }
   }
 }

@@ -70,7 +70,7 @@ class Articulated {
   /// M^-1 of a row. `change` may not be `row`.
   void respond(std::span<const double> row, std::span<double> change);
 
-  /// Forces besides gravity, at the centres of links, for rates() and joint_forces(): sets them to zero; adds
+  /// Forces besides gravity, at the centres of links, for rates() and joint_loads(): sets them to zero; adds
   /// one.
   void clear_forces();
   void pull(int link, const Wrench<D>& wrench);
@@ -79,8 +79,9 @@ class Articulated {
   void rates(std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
              std::span<double> v_rate);
 
-  /// Writes into `forces` what each joint that a chain holds puts on its a (N), at this stance.
-  void joint_forces(std::vector<Vec<D>>& forces);
+  /// Writes into `loads` what each joint that a chain holds puts on its a at this stance, without its limits,
+  /// motor, friction and spring: the force (N), and the torque about its place (N m).
+  void joint_loads(std::vector<Wrench<D>>& loads);
 
   /// Writes the joint coordinates and velocities for d and v since load() into `state`.
   void give(std::span<const double> d, std::span<const double> v, State<D>& state);

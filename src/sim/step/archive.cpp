@@ -55,11 +55,11 @@ template <class Visit, int D>
 void fields(Visit& visit, State<D>& it) {
   visit(it.step), visit(it.beyond), visit(it.x), visit(it.v), visit(it.turn), visit(it.spin);
   visit(it.grips), visit(it.touches), visit(it.ledger.displacement), visit(it.ledger.impacts);
-  visit(it.energy_budget.level), visit(it.energy_budget.amount), visit(it.body_spin), visit(it.blasts),
-      visit(it.chain_states);
+  visit(it.energy_budget.level), visit(it.energy_budget.amount), visit(it.energy_budget.work),
+      visit(it.body_spin), visit(it.blasts), visit(it.chain_states);
   visit(it.intact), visit(it.part_poses), visit(it.bonded), visit(it.contacts), visit(it.frozen),
       visit(it.quiet);
-  visit(it.broken), visit(it.joint_forces), visit(it.work), visit(it.released);
+  visit(it.broken), visit(it.joint_forces), visit(it.joint_torques), visit(it.work), visit(it.released);
   visit(it.events), visit(it.on_piece);
 }
 
@@ -174,7 +174,8 @@ bool fits(const State<D>& state, const Model<D>& model) {
               state.bonded.size() == std::size_t(!model.bonds.empty()) &&
               state.part_poses.size() == (model.bonds.empty() ? 0 : bodies) && sized(state.frozen, bodies) &&
               state.quiet.size() == state.frozen.size() && sized(state.broken, joints) &&
-              sized(state.on_piece, joints) && state.joint_forces.size() == state.broken.size();
+              sized(state.on_piece, joints) && state.joint_forces.size() == state.broken.size() &&
+              state.joint_torques.size() == state.broken.size();
   std::size_t things = 0;
   for (const When<D>& when : model.whens) things += std::size_t(when.things());
   const EventLog& events = state.events;

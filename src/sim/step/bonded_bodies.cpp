@@ -343,9 +343,11 @@ void BondedBodies<D>::tell(State<D>& state) const {
   }
   state.broken.assign(model_.joints.size(), 0);
   state.joint_forces.assign(model_.joints.size(), Vec<D>::Zero());
+  state.joint_torques.assign(model_.joints.size(), AngularVec<D>::Zero());
   for (std::size_t k = 0; k < whole_.joints.size() && k < whole.broken.size(); ++k) {
     state.broken[whole_.joints[k]] = whole.broken[k];
     state.joint_forces[whole_.joints[k]] = whole.joint_forces[k];
+    state.joint_torques[whole_.joints[k]] = whole.joint_torques[k];
   }
   state.work = whole.work;
   state.blasts.resize(whole.blasts.size());
@@ -451,6 +453,9 @@ void BondedBodies<D>::split(State<D>& state) {
     made.broken.push_back(old < 0 || before.broken.empty() ? 0 : before.broken[old]);
     made.joint_forces.push_back(old < 0 || before.joint_forces.empty() ? Vec<D>(Vec<D>::Zero())
                                                                        : before.joint_forces[old]);
+    made.joint_torques.push_back(old < 0 || before.joint_torques.empty()
+                                     ? AngularVec<D>(AngularVec<D>::Zero())
+                                     : before.joint_torques[old]);
   }
   state.bonded = {made};
   // explosions push the pieces; nothing is at rest any more

@@ -68,6 +68,8 @@ double Events<D>::read(const State<D>& state, const Reading& of) {
   const int body = of.body;
   if (!of.of_forces()) return sim::read(instant(state, body), of.of);
   const auto known = [&](int joint) { return std::size_t(joint) < state.joint_forces.size(); };
+  if (of.of == torque)
+    return known(body) ? std::sqrt(state.joint_torques[std::size_t(body)].squaredNorm()) : 0;
   if (of.of == force) return known(body) ? std::sqrt(state.joint_forces[std::size_t(body)].squaredNorm()) : 0;
   const Model<D>& model = stepper_->model(state);
   Vec<D> sum = Vec<D>::Zero();

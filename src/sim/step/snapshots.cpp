@@ -26,9 +26,9 @@ constexpr double kFineCurve = 1e-5;  // of a track: how far its line may be from
 
 constexpr double kOnGround = 1e-6;  // of the room's height: what is nearer stands on it
 
-// in the plane (0, 0, w)
+// of a spin, a torque: in the plane (0, 0, w)
 template <int D>
-Vec3 inertia_times(const AngularVec<D>& w) {
+Vec3 turning_3d(const AngularVec<D>& w) {
   if constexpr (D == 2) {
     return {0, 0, w[0]};
   } else {
@@ -83,9 +83,10 @@ void blow(const Model<D>& model, const State<D>& state, Snapshot& now) {
     for (int body = 0; body < int(model.bodies.size()); ++body) {
       if (model.bodies[body].fixed) continue;
       const bool held = it.forces.size() == model.bodies.size();
-      const Vec<D> push = held ? it.forces[std::size_t(body)]
-                               : blasts.push(model.explosions[i], body, body_motion(state, body)).f;
-      now.bodies[std::size_t(body)].blast += to_3d<D>(push);
+      const Wrench<D> push = held ? Wrench<D>{it.torques[std::size_t(body)], it.forces[std::size_t(body)]}
+                                  : blasts.push(model.explosions[i], body, body_motion(state, body));
+      now.bodies[std::size_t(body)].blast += to_3d<D>(push.f);
+      now.bodies[std::size_t(body)].torque += turning_3d<D>(push.n);
     }
   }
 }
@@ -132,7 +133,51 @@ void field(const Model<D>& model, const State<D>& state, double t, Snapshot& now
     for (std::size_t i = 0; i < motions.size(); ++i) {
       if (model.bodies[i].fixed) continue;
       (drag ? now.bodies[i].drag : now.bodies[i].field) += to_3d<D>(wrenches[i].f);
+      now.bodies[i].torque += turning_3d<D>(wrenches[i].n);
     }
+  }
+}
+
+// what joints put on each body that they hold
+template <int D>
+void hold(const Model<D>& model, const State<D>& state, Snapshot& now) {
+  std::vector<BodyMotion<D>> motions;
+  for (std::size_t i = 0; i < model.joints.size() && i < state.joint_forces.size(); ++i) {
+    const Joint<D>& joint = model.joints[i];
+    if (state.broken[i]) continue;
+    const auto push = [&](int body, const Wrench<D>& by) {
+      if (body < 0) return;
+      now.bodies[std::size_t(body)].held += to_3d<D>(by.f);
+      now.bodies[std::size_t(body)].torque += turning_3d<D>(by.n);
+    };
+    const Wrench<D> on_a{state.joint_torques[i], state.joint_forces[i]};
+    if (!equations<D>(joint.kind).mechanism) {
+      const Vec<D> at = place(state, joint.a);
+      for (const auto& [body, sign] : {std::pair(joint.a.body, 1.0), std::pair(joint.b.body, -1.0)}) {
+        if (body >= 0) push(body, transformed_to_origin(on_a, Vec<D>(at - state.x[body])) * sign);
+      }
+      continue;
+    }
+    // its one row, from what it puts on a
+    if (motions.empty()) stand(state, motions);
+    Row<D> row[kMostHeld<D>];
+    double error[kMostHeld<D>];
+    static const BodyMotion<D> room;
+    const auto at = [&](int body) -> const BodyMotion<D>& {
+      return body < 0 ? room : motions[std::size_t(body)];
+    };
+    const AngularVec<D> turn = joint.turn_between([&](int body) {
+      const int k = body < 0 ? -1 : turning(state, body);
+      return k < 0 ? AngularVec<D>(AngularVec<D>::Zero()) : AngularVec<D>(rounds<D>(state.turn[k]));
+    });
+    rows(joint, at(joint.a.body), at(joint.b.body), turn, row, error, motions);
+    const Wrench<D> unit = load_on_a(joint, row[0], at(joint.a.body), at(joint.b.body));
+    const double size = unit.f.squaredNorm() + unit.n.squaredNorm();
+    if (!(size > 0)) continue;
+    const double f = (unit.f.dot(on_a.f) + unit.n.dot(on_a.n)) / size;
+    each_side(row[0], [&](int body, const Vec<D>& along, const AngularVec<D>& angular) {
+      push(body, Wrench<D>{angular, along} * f);
+    });
   }
 }
 
@@ -167,6 +212,7 @@ SceneInfo cast(const Model<D>& model, const State<D>& start, const std::vector<P
   cast.scale = model.scale;
   cast.gravity = to_3d<D>(model.gravity);
   cast.forces = !model.forces.empty() || model.changed;
+  cast.books_work = model.books_work();
   for (const Body<D>& body : model.bodies) cast.bodies.push_back(shown(body));
   for (const Drive<D>& drive : model.drives) cast.bodies[std::size_t(drive.body)].fixed = false;
   for (const Wall<D>& wall : model.walls)
@@ -234,12 +280,13 @@ Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>
     if (!model.bodies[i].fixed)
       body.kinetic = kinetic(model, state, i), body.gravity = gravity_energy(model, state, i);
     if (const int k = turning(state, i); k >= 0) {
-      body.spin = inertia_times<D>(state.spin[k]);
+      body.spin = turning_3d<D>(state.spin[k]);
       if (D == 2) body.angle = state.turn[k][0];
       body.orientation = quaternion<D>(state.turn[k]);
     }
   }
   if (blasting(state)) blow(model, state, now);
+  hold(model, state, now);
   drag(model, state, now);
   try {
     field(model, state, t, now);
@@ -255,7 +302,10 @@ Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint<D>& j = model.joints[i];
     Snapshot::Joint joint{to_3d<D>(place(state, j.a)), to_3d<D>(place(state, j.b))};
-    if (i < state.joint_forces.size()) joint.force = to_3d<D>(state.joint_forces[i]);
+    if (i < state.joint_forces.size()) {
+      joint.force = to_3d<D>(state.joint_forces[i]);
+      joint.torque = turning_3d<D>(state.joint_torques[i]);
+    }
     joint.broken = i < state.broken.size() && state.broken[i] != 0;
     now.joints.push_back(joint);
   }
@@ -292,7 +342,7 @@ Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>
   }
   now.energies = energies(model, state, stepper.paths(), t);
   now.momentum = to_3d<D>(momentum(model, state));
-  now.angular_momentum = inertia_times<D>(angular_momentum(model, state));
+  now.angular_momentum = turning_3d<D>(angular_momentum(model, state));
   return now;
 }
 

@@ -134,6 +134,7 @@ void Stepper<D>::begin(State<D>& state) {
     state.frozen.resize(model_.bodies.size()), state.quiet.resize(model_.bodies.size());
     state.broken.resize(model_.joints.size());
     state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
+    state.joint_torques.resize(model_.joints.size(), AngularVec<D>::Zero());
   }
   follow(model_, state);
   state.touches.reserve(2 * model_.bodies.size() + 16);
@@ -232,7 +233,7 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
     const double to = cut ? edge->at.fraction : fraction;
     const double begun = time({state.step, from}, model_.rate), ended = time({state.step, to}, model_.rate);
     if (!contact_) plan(state);
-    books_by_stage_ = !contact_ && dynamics_.size() == 0;
+    books_by_stage_ = !contact_ && dynamics_.size() == 0 && forces_.any();
     if (!books_by_stage_) work_.open(state);
     if (contact_) {
       contact_->step(state, begun, (to - from) * h);

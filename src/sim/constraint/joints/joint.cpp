@@ -48,15 +48,45 @@ bool free_row(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>
   return true;
 }
 
+template <int D>
+Wrench<D> load_on_a(const Joint<D>& joint, const Row<D>& row, const BodyMotion<D>& a,
+                    const BodyMotion<D>& b) {
+  const Vec<D> place = a.x + a.arm(joint.a.local);
+  Wrench<D> load{AngularVec<D>::Zero(), row.along};
+  const int body = joint.a.body >= 0 ? joint.a.body : joint.b.body;
+  const double sign = joint.a.body >= 0 ? 1 : -1;  // the room is a: the opposite of what b gets
+  const Vec<D> arm = place - (joint.a.body >= 0 ? a.x : b.x);
+  each_side(row, [&](int side, const Vec<D>& along, const AngularVec<D>& angular) {
+    if (side == body) load.n += sign * (angular - moment<D>(arm, along));
+  });
+  return load;
+}
+
+template <int D>
+Wrench<D> coil_load(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
+                    const AngularVec<D>& turn) {
+  if (!joint.coil) return {};
+  Row<D> row;
+  double c = 0;
+  free_row(joint, a, b, turn, row, c);
+  return load_on_a(joint, row, a, b) * coil_force(joint, row, c, a, b);
+}
+
 template const JointEquations<2>& equations<2>(JointKind);
 template int rows<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const AngularVec<2>&,
                      Row<2>*, double*, std::span<const BodyMotion<2>>);
 template bool free_row<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const AngularVec<2>&,
                           Row<2>&, double&);
+template Wrench<2> load_on_a<2>(const Joint<2>&, const Row<2>&, const BodyMotion<2>&, const BodyMotion<2>&);
+template Wrench<2> coil_load<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&,
+                                const AngularVec<2>&);
 template const JointEquations<3>& equations<3>(JointKind);
 template int rows<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const AngularVec<3>&,
                      Row<3>*, double*, std::span<const BodyMotion<3>>);
 template bool free_row<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const AngularVec<3>&,
                           Row<3>&, double&);
+template Wrench<3> load_on_a<3>(const Joint<3>&, const Row<3>&, const BodyMotion<3>&, const BodyMotion<3>&);
+template Wrench<3> coil_load<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&,
+                                const AngularVec<3>&);
 
 }  // namespace obscura::sim

@@ -8,13 +8,16 @@
 //   limit     lower <= c <= upper              a row along the free coordinate c, of one sign
 //   motor     c' = speed, |f| <= most          the same row, bounded both ways; friction: c' = 0, |f| <=
 //   friction breaks    |sum of f_i s_i| > breaks        s_i  linear part of row i: the force of its rows, N
+//             |sum of f_i t_i| > breaks_torque t_i  its torque on a about the place of a, N m
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <type_traits>
 #include <vector>
 
 #include "sim/constraint/row.h"
+#include "sim/math/spatial.h"
 
 namespace obscura::sim {
 
@@ -105,5 +108,31 @@ bool has_free_row(const Joint<D>& joint) {
 template <int D>
 bool free_row(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
               const AngularVec<D>& turn, Row<D>& out, double& way);
+
+/// What a row of a joint puts on its a for a unit of its force: the force that is shown (N), and the torque
+/// about the place of that end (N m).
+template <int D>
+Wrench<D> load_on_a(const Joint<D>& joint, const Row<D>& row, const BodyMotion<D>& a, const BodyMotion<D>& b);
+
+/// The force of a joint's spring along its free coordinate c, N or N m; `row` and c as of free_row().
+template <int D>
+double coil_force(const Joint<D>& joint, const Row<D>& row, double c, const BodyMotion<D>& a,
+                  const BodyMotion<D>& b) {
+  const double speed =
+      (row.along.dot(a.v) + row.angular_a.dot(a.w)) - (row.along.dot(b.v) + row.angular_b.dot(b.w));
+  return -joint.coil->stiffness * (c - joint.coil->rest) - joint.coil->damping * speed;
+}
+
+/// What that spring puts on a, as load_on_a(); nothing where there is none.
+template <int D>
+Wrench<D> coil_load(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
+                    const AngularVec<D>& turn);
+
+/// Whether it bears no such load: it breaks.
+template <int D>
+bool overloaded(const Joint<D>& joint, const Wrench<D>& load) {
+  return std::sqrt(load.f.squaredNorm()) > joint.breaks ||
+         std::sqrt(load.n.squaredNorm()) > joint.breaks_torque;
+}
 
 }  // namespace obscura::sim

@@ -37,11 +37,11 @@ void ExactSolver<D>::apply_impulses(State<D>& state, bool places) {
   dynamics_.chains().follow(state);
 }
 
-// the forces that the joints of chains bear at this instant, into outcome_.joint_forces; before those of rows
+// the forces that the joints of chains bear at this instant, into outcome_.joint_loads; before those of rows
 template <int D>
 void ExactSolver<D>::record_chain_forces() {
   Articulated<D>& chains = dynamics_.chains();
-  if (chains.size() == 0) return;
+  if (chains.links().empty()) return;
   for (int i = 0; i < int(rows_.size()); ++i) {
     if (!chain_response_.moves(i) || f_[i] == 0) continue;
     const Row<D>& row = rows_[i];
@@ -53,7 +53,7 @@ void ExactSolver<D>::record_chain_forces() {
         chains.pull(chains.link(side.body), Wrench<D>{side.angular, side.along} * f_[i]);
     }
   }
-  chains.joint_forces(outcome_.joint_forces);
+  chains.joint_loads(outcome_.joint_loads);
 }
 
 #define OBSCURA_INSTANTIATE(D)                                   \

@@ -297,18 +297,20 @@ double ExactSolver<D>::breaking_time(const State<D>& state, Couple& which) const
   double first = kNever;
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
-    if (!(joint.breaks < 1e299) || state.broken[i] || !moves(joint)) continue;
-    Vec<D> load = Vec<D>::Zero();
+    if (!(joint.breaks < 1e299 || joint.breaks_torque < 1e299) || state.broken[i] || !moves(joint)) continue;
+    const Wrench<D>& at_begin = outcome_.joint_loads[i];
+    Wrench<D> at_end = load_of_coil(state, i);
     for (const Constraint& constraint : constraints_) {
-      if (constraint.kind == Constraint::Kind::contact || constraint.of != i) continue;
-      for (int k = constraint.first; k < constraint.first + constraint.rows; ++k)
-        load += f_[k] * rows_[k].along;
+      if (constraint.kind != Constraint::Kind::contact && constraint.of == i) at_end += load(constraint);
     }
-    const double begun = std::sqrt(outcome_.joint_forces[i].squaredNorm()),
-                 now = std::sqrt(load.squaredNorm()), most = joint.breaks * (1 + kBeyond);
-    if (begun >= most || now <= most) continue;
-    const double part = (most - begun) / (now - begun);
-    if (part < first) first = part, which = {joint.a.body, joint.b.body};
+    const auto passes = [&](double begun, double now, double bears) {
+      const double most = bears * (1 + kBeyond);
+      if (begun >= most || now <= most) return;
+      const double part = (most - begun) / (now - begun);
+      if (part < first) first = part, which = {joint.a.body, joint.b.body};
+    };
+    passes(std::sqrt(at_begin.f.squaredNorm()), std::sqrt(at_end.f.squaredNorm()), joint.breaks);
+    passes(std::sqrt(at_begin.n.squaredNorm()), std::sqrt(at_end.n.squaredNorm()), joint.breaks_torque);
   }
   return first;
 }

@@ -166,7 +166,9 @@ bool ExactSolver<D>::collide(StepPart<D> step) {
   const std::size_t n = model_.bodies.size();
   resize_for(state);
   step_.contacts.clear(), step_.impulses.clear();
-  outcome_.joint_forces = state.joint_forces;
+  outcome_.joint_loads.resize(state.joint_forces.size());
+  for (std::size_t i = 0; i < state.joint_forces.size(); ++i)
+    outcome_.joint_loads[i] = {state.joint_torques[i], state.joint_forces[i]};
   cone_.thorough = model_.collision == Collision::event || state.step % kThorough == 0;
 
   activate_all();
@@ -273,7 +275,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
     if (!chosen) progress_.rough = !event_mode;
     if (chosen && spent < most_cuts && tiny <= kStuck) {
       if (progress_.released) release_contact();
-      record_forces();
+      record_forces(state);
       if (event_mode && break_loaded(state, done)) continue;
       if (coming_apart()) project_state(state);
       // at the friction limit nothing slips: as an equality it is sticking
@@ -324,7 +326,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   }
   resolve_contact_impacts(state);
   // the forces that joints are shown with and break by are those of the end
-  if (!active_.joints.empty() && solve_modes(state, t + h)) record_forces();
+  if (!active_.joints.empty() && solve_modes(state, t + h)) record_forces(state);
   // contacts that were pushed apart have another gap now than when their force was found
   if (!progress_.rough) return;
   update_poses(state);
@@ -403,7 +405,19 @@ void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const 
   for (int i = 0; i < int(rows_.size()); ++i) add_accelerations(i, f_[i], v_rate);
   if (const int work = dynamics_.work_place(); work >= 0) {
     for (int i = 0; i < int(rows_.size()); ++i) v_rate[std::size_t(work)] += f_[i] * given(i);
+    v_rate[std::size_t(work)] += motor_power();
   }
+}
+
+// of the forces f_ of motors at the poses at hand, without what given() has of it, W
+template <int D>
+double ExactSolver<D>::motor_power() const {
+  double sum = 0;
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind == Constraint::Kind::motor)
+      sum += f_[constraint.first] * row_velocity(constraint.first);
+  }
+  return sum;
 }
 
 // the rest of a step at once: impulses instead of forces, so that nothing that touches comes closer at its
@@ -456,7 +470,7 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
       course_->meetings.push_back({key.a, key.b, stepped_, stepped_ + h});
   }
   f_ /= h;
-  record_forces();
+  record_forces(state);
 
   // push apart bodies that overlap now and did not before
   pose_driven(t + h);

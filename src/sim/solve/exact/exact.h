@@ -171,7 +171,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   // outcome, of the group at hand, then of the step
   struct Outcome {
     std::vector<Contact<D>> contacts, impulses;
-    std::vector<Vec<D>> joint_forces;
+    std::vector<Wrench<D>> joint_loads;  // on a, about its place
   };
 
   // scratch: no function reads here what another left
@@ -209,7 +209,9 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void step_by_impulses(State<D>& state, double t, double h);
   double time_unseen(const State<D>& state) const;
   void write_contacts(State<D>& state);
-  void record_forces();
+  void record_forces(const State<D>& state);
+  Wrench<D> load(const Constraint& constraint) const;
+  Wrench<D> load_of_coil(const State<D>& state, int joint) const;
   void release_contact();
   void break_joints(State<D>& state);
   bool break_loaded(State<D>& state, double done);
@@ -247,8 +249,13 @@ class ExactSolver final : public ContactSolver<D>, private System {
   }
   bool shifts(int body) const { return response_.moves(body) || drives_.number(body) >= 0; }
   BodyMotion<D> end_pose(const State<D>& state, int body) const;
+  const BodyMotion<D>& pose(int body) const {
+    static const BodyMotion<D> room;
+    return body < 0 ? room : poses_[std::size_t(body)];
+  }
   AngularVec<D> rounds_of(const State<D>& state, int body) const;
   double given(int row) const;
+  double motor_power() const;
   AngularVec<D> turn_between(const State<D>& state, const Joint<D>& joint) const;
   void collect_constraints(const State<D>& state, bool all);
   void build_jacobian(Constraint& constraint, const AngularVec<D>& turn);

@@ -22,7 +22,8 @@ void ExactSolver<D>::report(StepPart<D> step) {
 
 template <int D>
 void ExactSolver<D>::write_contacts(State<D>& state) {
-  state.joint_forces = outcome_.joint_forces;
+  for (std::size_t i = 0; i < outcome_.joint_loads.size(); ++i)
+    state.joint_forces[i] = outcome_.joint_loads[i].f, state.joint_torques[i] = outcome_.joint_loads[i].n;
   for (const Contact<D>& struck : outcome_.impulses) {
     const auto at = std::lower_bound(outcome_.contacts.begin(), outcome_.contacts.end(), struck,
                                      [](const auto& p, const auto& q) { return p.key < q.key; });
@@ -47,17 +48,18 @@ void ExactSolver<D>::write_contacts(State<D>& state) {
 
 // contacts and joints and their forces as they were chosen last; joints of what is frozen keep theirs
 template <int D>
-void ExactSolver<D>::record_forces() {
+void ExactSolver<D>::record_forces(const State<D>& state) {
   outcome_.contacts.clear(), progress_.known = &outcome_.contacts;
   for (const int i : active_.joints) {
-    const Joint<D>& joint = model_.joints[i];
-    if (moves(joint)) outcome_.joint_forces[i].setZero();
+    if (moves(model_.joints[i])) outcome_.joint_loads[i] = {};
   }
   record_chain_forces();
   for (const Constraint& constraint : constraints_) {
-    if (constraint.kind == Constraint::Kind::contact) continue;
-    for (int i = constraint.first; i < constraint.first + constraint.rows; ++i)
-      outcome_.joint_forces[constraint.of] += f_[i] * rows_[i].along;
+    if (constraint.kind != Constraint::Kind::contact) outcome_.joint_loads[constraint.of] += load(constraint);
+  }
+  for (const int i : active_.joints) {
+    if (model_.joints[i].coil && moves(model_.joints[i]) && !state.broken[i])
+      outcome_.joint_loads[i] += load_of_coil(state, i);
   }
   for (const Constraint& constraint : constraints_) {
     if (constraint.kind != Constraint::Kind::contact) continue;
@@ -72,6 +74,23 @@ void ExactSolver<D>::record_forces() {
     for (int i = 0; i < D; ++i) contact.force += f_[constraint.first + i] * rows_[constraint.first + i].along;
     outcome_.contacts.push_back(contact);
   }
+}
+
+// what the rows of a constraint of a joint put on its a, at the poses at hand
+template <int D>
+Wrench<D> ExactSolver<D>::load(const Constraint& constraint) const {
+  const Joint<D>& joint = model_.joints[constraint.of];
+  Wrench<D> sum;
+  for (int k = constraint.first; k < constraint.first + constraint.rows; ++k)
+    sum += load_on_a(joint, rows_[k], pose(joint.a.body), pose(joint.b.body)) * f_[k];
+  return sum;
+}
+
+// what its spring does
+template <int D>
+Wrench<D> ExactSolver<D>::load_of_coil(const State<D>& state, int i) const {
+  const Joint<D>& joint = model_.joints[i];
+  return coil_load(joint, pose(joint.a.body), pose(joint.b.body), turn_between(state, joint));
 }
 
 // what holds through an interval
@@ -114,9 +133,7 @@ bool ExactSolver<D>::break_loaded(State<D>& state, double done) {
   scratch_.unheld.clear();
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
-    if (state.broken[i] || !moves(joint) ||
-        !(std::sqrt(outcome_.joint_forces[i].squaredNorm()) > joint.breaks))
-      continue;
+    if (state.broken[i] || !moves(joint) || !overloaded(joint, outcome_.joint_loads[i])) continue;
     state.broken[i] = 1;
     joint.each_body([&](int body) {
       if (body >= 0) scratch_.unheld.push_back(body);
@@ -142,7 +159,7 @@ void ExactSolver<D>::break_joints(State<D>& state) {
   let_go_of_wires(state);
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     const Joint<D>& joint = model_.joints[i];
-    if (state.broken[i] || !(std::sqrt(state.joint_forces[i].squaredNorm()) > joint.breaks)) continue;
+    if (state.broken[i] || !overloaded(joint, {state.joint_torques[i], state.joint_forces[i]})) continue;
     state.broken[i] = 1;
     joint.each_body([&](int body) {
       if (body >= 0) scratch_.unheld.push_back(body);
@@ -152,13 +169,15 @@ void ExactSolver<D>::break_joints(State<D>& state) {
   if (!scratch_.unheld.empty()) sleep_.wake(state, scratch_.unheld);
 }
 
-#define OBSCURA_INSTANTIATE(D)                                                \
-  template void ExactSolver<D>::report(StepPart<D>);                          \
-  template void ExactSolver<D>::write_contacts(State<D>&);                    \
-  template void ExactSolver<D>::record_forces();                              \
-  template void ExactSolver<D>::note_contacts(double, double);                \
-  template void ExactSolver<D>::note_motion(const State<D>&, double, double); \
-  template bool ExactSolver<D>::break_loaded(State<D>&, double);              \
+#define OBSCURA_INSTANTIATE(D)                                                 \
+  template void ExactSolver<D>::report(StepPart<D>);                           \
+  template void ExactSolver<D>::write_contacts(State<D>&);                     \
+  template void ExactSolver<D>::record_forces(const State<D>&);                \
+  template Wrench<D> ExactSolver<D>::load(const Constraint&) const;            \
+  template Wrench<D> ExactSolver<D>::load_of_coil(const State<D>&, int) const; \
+  template void ExactSolver<D>::note_contacts(double, double);                 \
+  template void ExactSolver<D>::note_motion(const State<D>&, double, double);  \
+  template bool ExactSolver<D>::break_loaded(State<D>&, double);               \
   template void ExactSolver<D>::break_joints(State<D>&)
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);

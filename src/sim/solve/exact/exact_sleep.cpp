@@ -55,7 +55,7 @@ void ExactSolver<D>::put_to_sleep(State<D>& state, double t, double h) {
     for (const int body : island.bodies)
       island.residual = std::max(island.residual, scratch_.accelerations[body]);
   }
-  if (sleep_.put_to_sleep(state)) record_forces();
+  if (sleep_.put_to_sleep(state)) record_forces(state);
 }
 
 // the acceleration that bodies would have from here, m/s^2 of the fastest point; infinite if no forces are

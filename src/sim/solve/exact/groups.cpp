@@ -237,6 +237,7 @@ void ExactSolver<D>::resize_for(State<D>& state) {
   const std::size_t n = model_.bodies.size();
   state.frozen.resize(n), state.quiet.resize(n), state.broken.resize(model_.joints.size());
   state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
+  state.joint_torques.resize(model_.joints.size(), AngularVec<D>::Zero());
   if (limits_.wires) state.on_piece.resize(model_.joints.size());
   poses_.resize(n), island_of_.resize(n);
   roots_.reset(int(n));

@@ -188,17 +188,17 @@ void JointSolver<D>::finish(double h) {
   }
 }
 
-// half of each impulse where the step began, half where it ends
+// the work of kinematic bodies and motors: half of each impulse where the step began, half where it ends
 template <int D>
 void JointSolver<D>::book() {
   work_ = 0;
-  if (!driven_) return;
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
+  for (std::size_t r = 0; r < rows_.size() && driven_; ++r)
     work_ += 0.5 * totals_[r] * (begun_drive_works_[r] + drive_works_[r]);
-  }
   for (std::size_t k = 0; k < active_; ++k) {
     const Bounded& b = bounded_[k];
-    work_ += 0.5 * b.impulse * (b.begun_drive_work + given(b.row));
+    if (driven_) work_ += 0.5 * b.impulse * (b.begun_drive_work + given(b.row));
+    if (b.load != motor) continue;
+    work_ += 0.5 * b.impulse * (begun_motors_[std::size_t(b.joint)].rate + speed(b.row, at_));
   }
 }
 

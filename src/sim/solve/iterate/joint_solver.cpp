@@ -58,6 +58,7 @@ template <int D>
 void JointSolver<D>::prepare(State<D>& state) const {
   state.broken.resize(model_.joints.size());
   state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
+  state.joint_torques.resize(model_.joints.size(), AngularVec<D>::Zero());
 }
 
 template <int D>
@@ -120,7 +121,7 @@ void JointSolver<D>::plan() {
   taut_.assign(held_.size(), 0), least_force_.assign(held_.size(), 0.0);
   loose_.assign(std::size_t(factors_.rows()), 0);
   for (const int k : ropes_) loose_[std::size_t(factors_.first(k))] = 1;
-  first_forces_.assign(held_.size(), Vec<D>::Zero()), last_forces_ = first_forces_;
+  first_loads_.assign(held_.size(), {}), last_loads_ = first_loads_;
 }
 
 template <int D>
@@ -445,20 +446,28 @@ void JointSolver<D>::keep(State<D>& state, double h, const std::vector<char>* of
     if (!of) return moves(joint) || broken_[i] != 0;
     return joint.any_body([&](int body) { return response_.moves(body) && (*of)[body] != 0; });
   };
+  const auto add = [&](int i, const Wrench<D>& load) {
+    state.joint_forces[std::size_t(i)] += load.f, state.joint_torques[std::size_t(i)] += load.n;
+  };
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     if (!wanted(i)) continue;
-    state.joint_forces[i].setZero();
+    state.joint_forces[i].setZero(), state.joint_torques[i].setZero();
+    const Joint<D>& joint = model_.joints[i];
+    if (joint.coil && !broken_[i])
+      add(i, coil_load(joint, side(joint.a.body), side(joint.b.body), turn_between(joint)));
   }
   for (int k = 0; k < int(held_.size()); ++k) {
     if (!wanted(held_[k])) continue;
-    if (!of) state.joint_forces[held_[k]] += 0.5 * (first_forces_[k] + last_forces_[k]);
+    if (!of) {
+      const Wrench<D>&first = first_loads_[k], &last = last_loads_[k];
+      add(held_[k], {AngularVec<D>(0.5 * (first.n + last.n)), Vec<D>(0.5 * (first.f + last.f))});
+    }
     for (int r = factors_.first(k); r < factors_.first(k) + factors_.size(k); ++r)
-      state.joint_forces[held_[k]] += totals_[r] / h * rows_[r].along;
+      add(held_[k], load(held_[k], rows_[r]) * (totals_[r] / h));
   }
   for (std::size_t k = 0; k < active_; ++k) {
     const Bounded& b = bounded_[k];
-    if (!wanted(b.joint)) continue;
-    state.joint_forces[b.joint] += b.impulse / h * b.row.along;
+    if (wanted(b.joint)) add(b.joint, load(b.joint, b.row) * (b.impulse / h));
   }
 }
 
@@ -466,7 +475,7 @@ template <int D>
 bool JointSolver<D>::break_joints(State<D>& state) const {
   bool any = false;
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
-    if (state.broken[i] || !(std::sqrt(state.joint_forces[i].squaredNorm()) > model_.joints[i].breaks))
+    if (state.broken[i] || !overloaded(model_.joints[i], {state.joint_torques[i], state.joint_forces[i]}))
       continue;
     state.broken[i] = 1, any = true;
   }

@@ -120,7 +120,7 @@ class JointSolver final : public System {
 
   /// After a step: projects positions onto C = 0 and velocities onto J v = 0 at the new positions.
   void finish(double h);
-  /// The work of kinematic bodies through joints in the step that was finished last, J.
+  /// The work of kinematic bodies through joints, and of motors, in the step that was finished last, J.
   double given() const { return work_; }
   /// Bodies that rows with bounds have pushed, directly or through joints, since clear_pushed(), one a body;
   /// null: none.
@@ -183,6 +183,11 @@ class JointSolver final : public System {
   const BodyMotion<D>& side(int body) const { return body < 0 ? room_ : at_[body]; }
   double row_acceleration(const Row<D>& row, std::span<const double> v_rate) const;
   double given(const Row<D>& row) const;
+  // what a unit of force along a row of a joint puts on its a
+  Wrench<D> load(int joint, const Row<D>& row) const {
+    const Joint<D>& it = model_.joints[std::size_t(joint)];
+    return load_on_a(it, row, side(it.a.body), side(it.b.body));
+  }
   void push(const Row<D>& row, double impulse);
   template <class Act>
   void each_push(const Row<D>& row, double impulse, Act&& act) const {
@@ -277,8 +282,9 @@ class JointSolver final : public System {
     double value = 0, rate = 0;  // rad or m; a second
   };
   std::vector<Coordinate> begun_motors_;  // one a joint: of those with a motor, where the step begins
-  std::vector<Vec<D>> first_forces_, last_forces_;  // of each joint of held_ in its first and last stage, N
-  std::vector<Bounded> bounded_;                    // the first `active_` are in use
+  std::vector<Wrench<D>> first_loads_,
+      last_loads_;                // of each joint of held_ in its first and last stage, on a
+  std::vector<Bounded> bounded_;  // the first `active_` are in use
   std::size_t active_ = 0;
   std::vector<int> by_component_;     // numbers of them by component, those of component -1 first
   std::vector<int> component_first_;  // where each component begins there

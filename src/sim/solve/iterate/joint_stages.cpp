@@ -155,16 +155,17 @@ void JointSolver<D>::rates(double t, std::span<const double> d, std::span<const 
     for (std::size_t r = 0; r < rows_.size(); ++r) v_rate[std::size_t(work)] += rhs_[r] * drive_works_[r];
   }
   for (std::size_t k = 0; k < held_.size(); ++k) {
-    last_forces_[k].setZero();
+    last_loads_[k] = {};
     const int first = factors_.first(int(k));
-    for (int r = first; r < first + factors_.size(int(k)); ++r) last_forces_[k] += rhs_[r] * rows_[r].along;
+    for (int r = first; r < first + factors_.size(int(k)); ++r)
+      last_loads_[k] += load(held_[k], rows_[std::size_t(r)]) * rhs_[std::size_t(r)];
   }
   for (const int k : ropes_) {
     if (taut_[std::size_t(k)])
       least_force_[std::size_t(k)] =
           std::min(least_force_[std::size_t(k)], rhs_[std::size_t(factors_.first(k))]);
   }
-  if (first_stage_) first_forces_ = last_forces_;
+  if (first_stage_) first_loads_ = last_loads_;
   first_stage_ = false;
 }
 

@@ -1,0 +1,303 @@
+// What joints bear and give, as is reported of them: force and torque against closed forms, against what the
+// bodies do, and the work of motors and drag.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "scene/error.h"
+#include "scene/text_run.h"
+
+namespace obscura::scene {
+namespace {
+
+constexpr double kG = 9.81;
+constexpr double kSmall = 1e-9;
+
+struct Way {
+  std::string name, keys;
+};
+const std::vector<Way> kWays = {
+    {"contact", "collision = 'contact'\nsolver = 'direct'\n"},
+    {"event", "collision = 'event'\n"},
+    {"iterative", "collision = 'contact'\nsolver = 'iterative'\n"},
+};
+
+std::string flat(const Way& way, const std::string& more = "") {
+  return "duration = 1000\n[room]\nsize = [20, 20]\ncorner = [-10, -10]\nwalls = 'none'\n" + more +
+         "[physics]\nrate = 600\n" + way.keys;
+}
+std::string deep(const Way& way, const std::string& more = "") {
+  return "duration = 1000\n[room]\nsize = [20, 20, 20]\ncorner = [-10, -10, -10]\nwalls = 'none'\n" + more +
+         "[physics]\nrate = 600\n" + way.keys;
+}
+
+std::string refusal_of(const std::string& text) {
+  try {
+    parse(text, "a.toml", {});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// A beam of 2 kg and 3 m that a wall holds at one end: m g, and m g l / 2 about that end.
+TEST(JointLoads, AWeldBearsTheBendingMomentOfABeam) {
+  for (const Way& way : kWays) {
+    for (const bool space : {false, true}) {
+      TextRun scene((space ? deep(way) : flat(way)) +
+                    fmt::format("[[box]]\nname = 'beam'\nsize = [3, 0.2{0}]\nmass = 2\nposition = [1.5, "
+                                "0{1}]\n[[joint]]\nname = 'wall'\ntype = 'weld'\nbetween = ['beam', "
+                                "'room']\nat = [0, 0{1}]\n",
+                                space ? ", 0.2" : "", space ? ", 0" : ""));
+      const sim::Snapshot now = scene.at(0.5);
+      EXPECT_NEAR((now.joints[0].force - sim::Vec3(0, 2 * kG, 0)).norm(), 0, 1e-8) << way.name << space;
+      EXPECT_NEAR((now.joints[0].torque - sim::Vec3(0, 0, 2 * kG * 1.5)).norm(), 0, 1e-8)
+          << way.name << space;
+    }
+  }
+}
+
+// and the other way round: what is a and what is b changes its sign alone
+TEST(JointLoads, TheRoomAsTheFirstEndBearsTheOpposite) {
+  for (const Way& way : kWays) {
+    TextRun scene(flat(way) +
+                  "[[box]]\nname = 'beam'\nsize = [3, 0.2]\nmass = 2\nposition = [1.5, 0]\n[[joint]]\ntype = "
+                  "'weld'\nbetween = ['room', 'beam']\nat = [0, 0]\n");
+    const sim::Snapshot now = scene.at(0.5);
+    const double sign = scene.run->scene_info().joints[0].a < 0 ? -1 : 1;
+    EXPECT_NEAR(now.joints[0].force.y(), sign * 2 * kG, 1e-8) << way.name;
+    EXPECT_NEAR(now.joints[0].torque.z(), sign * 2 * kG * 1.5, 1e-8) << way.name;
+  }
+}
+
+// A motor that gives its most all the time: that torque, and its work is torque times angle.
+TEST(JointLoads, AMotorAtItsMostGivesThatAndItsWorkIsTorqueTimesAngle) {
+  for (const Way& way : kWays) {
+    for (const bool space : {false, true}) {
+      TextRun scene(
+          (space ? deep(way, "gravity = [0, 0, 0]\n") : flat(way, "gravity = [0, 0]\n")) +
+          fmt::format("[[ball]]\nname = 'wheel'\nradius = 0.5\nmass = 4\nposition = [0, 0{}]\n"
+                      "[[joint]]\ntype = 'hinge'\nbetween = ['wheel', 'room']\n{}motor = {{ speed = "
+                      "1e6, most = 0.3 }}\n",
+                      space ? ", 0" : "", space ? "axis = [0, 0, 1]\n" : ""));
+      const double inertia = space ? 0.4 * 4 * 0.25 : 0.5 * 4 * 0.25, t = 1.5;
+      const sim::Snapshot now = scene.at(t);
+      const double w = 0.3 / inertia * t;
+      EXPECT_NEAR(now.bodies[0].spin.z(), w, kSmall) << way.name << space;
+      EXPECT_NEAR(now.joints[0].torque.z(), 0.3, kSmall) << way.name << space;
+      EXPECT_NEAR(now.bodies[0].torque.z(), 0.3, kSmall) << way.name << space;
+      EXPECT_NEAR(now.energies.work, 0.3 * 0.5 * w * t, 1e-8) << way.name << space;
+      EXPECT_NEAR(now.energies.total() - now.energies.work, 0, 1e-8) << way.name << space;
+    }
+  }
+}
+
+// A motor that lifts a weight on an arm at its speed: m g l cos(theta) at each angle, and its work is what
+// the weight gains.
+TEST(JointLoads, AMotorThatHoldsItsSpeedBearsWhatHangsOnIt) {
+  for (const Way& way : kWays) {
+    TextRun scene(
+        flat(way) +
+        "[[ball]]\nname = 'bob'\nradius = 0.1\nmass = 2\nposition = [1, 0]\nvelocity = [0, 0.7]\nspin = "
+        "40.107045659157625\n[[joint]]\ntype = 'pin'\nbetween = ['bob', 'room']\nat = [0, 0]\nmotor = { "
+        "speed = "
+        "40.107045659157625, most = 1000 }\n");
+    const double begun = scene.at(0).energies.total();
+    for (const double t : {0.5, 1.25, 3.0}) {
+      const sim::Snapshot now = scene.at(t);
+      const double angle = 0.7 * t;
+      EXPECT_NEAR(now.bodies[0].angle, angle, 1e-7) << way.name;
+      EXPECT_NEAR(now.joints[0].torque.z(), 2 * kG * std::cos(angle), 0.03) << way.name;
+      EXPECT_NEAR(now.energies.total() - begun, 2 * kG * std::sin(angle), 1e-6) << way.name;
+      EXPECT_NEAR(now.energies.work, 2 * kG * std::sin(angle), way.name == "iterative" ? 2e-4 : 1e-6)
+          << way.name;
+    }
+  }
+}
+
+// A torsion spring: -k theta; a slider's: -k x along its axis.
+TEST(JointLoads, SpringsOfJointsAreReportedWithThem) {
+  for (const Way& way : kWays) {
+    TextRun turned(flat(way, "gravity = [0, 0]\n") +
+                   "[[box]]\nname = 'bar'\nsize = [1, 0.1]\nmass = 1\nposition = [0, 0]\nspin = "
+                   "114.59155902616465\n[[joint]]\n"
+                   "type = 'pin'\nbetween = ['bar', 'room']\nspring = { stiffness = 3 }\n");
+    TextRun slid(
+        flat(way, "gravity = [0, 0]\n") +
+        "[[box]]\nname = 'cart'\nsize = [1, 0.2]\nmass = 1\nposition = [0, 0]\nvelocity = [2, 0]\n"
+        "[[joint]]\ntype = 'slider'\nbetween = ['cart', 'room']\naxis = [1, 0]\nspring = { stiffness = "
+        "3 }\n");
+    for (const double t : {0.1, 0.4, 0.9}) {
+      const sim::Snapshot turn = turned.at(t), slide = slid.at(t);
+      EXPECT_NEAR(turn.joints[0].torque.z(), -3 * turn.bodies[0].angle, 1e-8) << way.name;
+      EXPECT_NEAR(slide.joints[0].force.x(), -3 * slide.bodies[0].position.x(), 1e-8) << way.name;
+      EXPECT_GT(std::fabs(turn.joints[0].torque.z()), 0.1);
+    }
+  }
+}
+
+// Two wheels on one axle, geared 2 to 1: no teeth, but a torque. A torque M on the first: its wheel has
+// M - tau, the other gets n tau.
+TEST(JointLoads, CoaxialGearsReportTheirTorque) {
+  for (const Way& way : kWays) {
+    TextRun scene(
+        flat(way, "gravity = [0, 0]\n") +
+        "[[ball]]\nname = 'p'\nradius = 0.5\nmass = 2\nposition = [0, 0]\ngroup = 'g'\n"
+        "[[ball]]\nname = 'q'\nradius = 0.4\nmass = 1\nposition = [0, 0]\ngroup = 'g'\n"
+        "[[joint]]\nname = 'one'\ntype = 'pin'\nbetween = ['p', 'room']\nmotor = { speed = 1e6, most = "
+        "0.5 }\n[[joint]]\nname = 'two'\ntype = 'pin'\nbetween = ['q', 'room']\n[[joint]]\nname = "
+        "'box'\ntype = 'gear'\njoints = ['one', 'two']\nratio = 2\n");
+    const sim::Snapshot now = scene.at(0.5);
+    const double I = 0.5 * 2 * 0.25, J = 0.5 * 1 * 0.16;
+    const double alpha = 0.5 / (I + J / 4);  // of p; q turns half as fast
+    EXPECT_NEAR(now.bodies[0].spin.z(), alpha * 0.5, kSmall) << way.name;
+    EXPECT_NEAR(now.bodies[1].spin.z(), alpha * 0.25, kSmall) << way.name;
+    EXPECT_NEAR(now.joints[2].torque.z(), -J * alpha / 4, kSmall) << way.name;
+    EXPECT_NEAR(now.bodies[1].torque.z(), J * alpha / 2, kSmall) << way.name;
+    EXPECT_NEAR(now.energies.total(), now.energies.work, 1e-8) << way.name;
+  }
+}
+
+// What is reported makes each body's acceleration: m a and I alpha from differences of velocities.
+TEST(JointLoads, TogetherMakeTheAccelerationOfEachBody) {
+  const std::string linkage =
+      "[[box]]\nname = 'base'\nsize = [0.6, 0.3]\nmass = 3\nposition = [0, 0]\n"
+      "[[box]]\nname = 'arm'\nsize = [1, 0.1]\nmass = 1\nposition = [0.5, 0]\nspin = 1\nvelocity = [0, 0.5]\n"
+      "[[ball]]\nname = 'tip'\nradius = 0.2\nmass = 0.5\nposition = [1, 0]\nvelocity = [0, 1]\nspin = 3\n"
+      "[[ball]]\nname = 'load'\nradius = 0.1\nmass = 2\nposition = [-2, -1]\n"
+      "[[box]]\nname = 'block'\nsize = [0.5, 0.4]\nmass = 2\nposition = [-3, -2]\n"
+      "[[joint]]\ntype = 'slider'\nbetween = ['base', 'room']\naxis = [1, 0.2]\nspring = { stiffness = 20, "
+      "damping "
+      "= 1 }\n"
+      "[[joint]]\ntype = 'pin'\nbetween = ['arm', 'base']\nat = [0, 0]\nmotor = { speed = 500, most = 1.5 }\n"
+      "[[joint]]\ntype = 'pin'\nbetween = ['tip', 'arm']\nat = [1, 0]\nfriction = 0.2\nspring = { stiffness "
+      "= 0.7 }\n"
+      "[[joint]]\ntype = 'pulley'\nbetween = ['load', [-4, 2]]\nover = [[-2, 2], { body = 'block', local = "
+      "[0.2, "
+      "0.1] }, [-3.5, 2], { body = 'block', local = [-0.2, 0.1] }]\n";
+  for (const Way& way : kWays) {
+    for (const double t : {0.12, 0.3, 0.55}) {
+      TextRun scene(flat(way) + linkage, {"physics.rate=6000"});
+      const double h = 1e-3, bound = way.name == "iterative" ? 1e-2 : 5e-4;
+      const sim::Snapshot before = scene.at(t - h), now = scene.at(t), after = scene.at(t + h);
+      const auto& cast = scene.run->scene_info();
+      for (std::size_t i = 0; i < now.bodies.size(); ++i) {
+        const sim::SceneInfo::Body& its = cast.bodies[i];
+        const double inertia = its.kind == sim::ShapeKind::box ? its.mass / 3 * its.half.squaredNorm()
+                                                               : 0.5 * its.mass * its.radius * its.radius;
+        const sim::Vec3 ma = its.mass / (2 * h) * (after.bodies[i].velocity - before.bodies[i].velocity);
+        const double rate = inertia / (2 * h) * (after.bodies[i].spin - before.bodies[i].spin).z();
+        // differences err by h^2 / 6 of the third derivative; by iterations forces are means of a step of
+        // 1/6000 s, half of it late, and change by up to 100 N/s
+        EXPECT_NEAR((its.mass * cast.gravity + now.bodies[i].held - ma).norm(), 0, bound)
+            << way.name << " " << its.name << " " << t;
+        EXPECT_NEAR(now.bodies[i].torque.z(), rate, bound) << way.name << " " << its.name << " " << t;
+      }
+    }
+  }
+}
+
+// A chain's joints report theirs, too.
+TEST(JointLoads, AChainsWeldBearsTheBendingMoment) {
+  TextRun scene(
+      "duration = 1000\n[room]\nsize = [20, 20]\ncorner = [-10, -10]\nwalls = 'none'\n[physics]\n"
+      "collision = 'contact'\n[[box]]\nname = 'one'\nsize = [1, 0.2]\nmass = 2\nposition = [0.5, 0]\n"
+      "[[box]]\nname = 'two'\nsize = [1, 0.2]\nmass = 3\nposition = [1.5, 0]\n"
+      "[[joint]]\nname = 'wall'\ntype = 'weld'\nbetween = ['one', 'room']\nat = [0, 0]\n"
+      "[[joint]]\nname = 'middle'\ntype = 'weld'\nbetween = ['two', 'one']\nat = [1, 0]\n"
+      "[[chain]]\nof = ['one', 'two']\n");
+  const sim::Snapshot now = scene.at(0.5);
+  EXPECT_NEAR(now.joints[0].torque.z(), (2 * 0.5 + 3 * 1.5) * kG, 1e-8);
+  EXPECT_NEAR(now.joints[1].torque.z(), 3 * 0.5 * kG, 1e-8);
+}
+
+// A weld that bears 30 N m under a beam that weighs 20 N m at rest, and more while a weight runs out on it:
+// here the load comes as the beam is longer.
+TEST(JointLoads, ATorqueAboveItsMostBreaksAJoint) {
+  for (const Way& way : kWays) {
+    const auto held = [&](double most) {
+      TextRun scene(flat(way) +
+                    fmt::format("[[box]]\nname = 'beam'\nsize = [3, 0.2]\nmass = 2\nposition = [1.5, 0]\n"
+                                "[[joint]]\ntype = 'weld'\nbetween = ['beam', 'room']\nat = [0, "
+                                "0]\nbreaks_torque = {}\n",
+                                most));
+      return !scene.at(0.5).joints[0].broken;
+    };
+    EXPECT_TRUE(held(2 * kG * 1.5 * 1.001)) << way.name;
+    EXPECT_FALSE(held(2 * kG * 1.5 * 0.999)) << way.name;
+  }
+}
+
+// The torque of a torsion spring that is wound up by a turning body passes its strength at a known time:
+// theta = w0 / W sin(W t), k theta = most. Under `event` at that time, else at the end of the step.
+TEST(JointLoads, ATorsionSpringBreaksItsPinWhenItIsWoundSoFar) {
+  const double k = 3, I = 1.0 / 12 * (1 + 0.01), W = std::sqrt(k / I), most = 0.5;
+  const double when = std::asin(most / k * W / 2) / W;
+  for (const Way& way : kWays) {
+    const std::string text =
+        flat(way, "gravity = [0, 0]\n") +
+        fmt::format(
+            "[[box]]\nname = 'bar'\nsize = [1, 0.1]\nmass = 1\nposition = [0, 0]\nspin = "
+            "114.59155902616465\n[[joint]]\nname "
+            "= 'pin'\ntype = 'pin'\nbetween = ['bar', 'room']\nspring = {{ stiffness = {} }}\nbreaks_torque "
+            "= {}\n[[when]]\nbreaks = 'pin'\ndo = [{{ mark = 'off' }}]\n[[when]]\nvalue = 'pin.torque > "
+            "0.25'\ndo = [{{ mark = 'half' }}]\n",
+            k, most);
+    TextRun scene(text);
+    scene.at(0.5);
+    const auto events = scene.run->events();
+    ASSERT_EQ(events.size(), 2u) << way.name;
+    const double half = std::asin(0.25 / k * W / 2) / W;
+    const double exact = way.name == "event" ? 1e-8 : 2.0 / 600;
+    EXPECT_NEAR(sim::value(events[0].time), half, exact) << way.name;
+    EXPECT_NEAR(sim::value(events[1].time), when, exact) << way.name;
+  }
+}
+
+TEST(JointLoads, WhatBearsNoTorqueIsNotBrokenByOne) {
+  const std::string two = flat(kWays[0]) + "[[ball]]\nname = 'a'\nradius = 0.1\nposition = [0, 0]\n";
+  EXPECT_THAT(refusal_of(two + "[[joint]]\ntype = 'rope'\nbetween = ['a', [0, 1]]\nbreaks_torque = 2\n"),
+              testing::HasSubstr("bears no torque"));
+}
+
+// The room's drag: (1 - exp(-2 c t / m)) of the kinetic energy, alone, among forces, and where bodies touch.
+TEST(Books, DragIsBookedAsWork) {
+  const double c = 0.7, m = 2, v = 3, t = 1.5;
+  const double left = 0.5 * m * v * v * std::exp(-2 * c * t / m);
+  for (const std::string mode : {"handout", "contact", "event"}) {
+    for (const std::string& force : {std::string(), std::string("[[force]]\ncomponents = ['0', '0']\n")}) {
+      TextRun scene(
+          fmt::format("duration = 1000\n[room]\nsize = [20, 20]\ncorner = [-10, -10]\nwalls = "
+                      "'none'\ngravity = [0, 0]\n[physics]\nrate = 600\ncollision = '{}'\n"
+                      "[[particle]]\nradius = 0.1\nmass = {}\nposition = [0, 0]\nvelocity = [{}, "
+                      "0]\ndrag = {}\n{}",
+                      mode, m, v, c, force));
+      const sim::Snapshot now = scene.at(t);
+      EXPECT_NEAR(now.energies.kinetic, left, 1e-9) << mode;
+      EXPECT_NEAR(now.energies.work, left - 0.5 * m * v * v, 1e-9) << mode << force;
+    }
+  }
+}
+
+// A hand that stirs a dragged ball for ever takes and gives many times what there is: no divergence.
+TEST(Books, AHandThatStirsAgainstDragIsNoDivergence) {
+  std::string path;
+  for (int i = 0; i <= 400; ++i)
+    path += fmt::format("{}[{:.2f}, {:.6f}, {:.6f}]", i ? ", " : "", 0.05 * i, 2 + std::cos(0.6 * i),
+                        2 + std::sin(0.6 * i));
+  TextRun scene(
+      fmt::format("duration = 30\n[room]\nsize = [4, 4]\ngravity = [0, 0]\n[physics]\nrate = 600\n"
+                  "[[particle]]\nradius = 0.1\nmass = 0.01\nposition = [3, 2]\ndrag = "
+                  "2\n[[mouse]]\nstiffness = 50\npath = [{}]\n",
+                  path));
+  EXPECT_LT(scene.at(19).energies.work, -100);
+}
+
+}  // namespace
+}  // namespace obscura::scene
