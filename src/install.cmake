@@ -89,7 +89,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/obscuraConfig.cmake
 
 list(TRANSFORM OBSCURA_ROOMS PREPEND "-lobscura_" OUTPUT_VARIABLE OBSCURA_LIBS)
 list(JOIN OBSCURA_LIBS " " OBSCURA_LIBS)
-set(OBSCURA_REQUIRES "eigen3 libpng freetype2 harfbuzz harfbuzz-subset fmt tomlplusplus libxxhash libdeflate libavcodec libavformat libavutil libswscale")
+set(OBSCURA_REQUIRES "eigen3 libpng freetype2 harfbuzz harfbuzz-subset fmt tomlplusplus libxxhash libdeflate")
 if(CAIRO_FOUND)
   string(APPEND OBSCURA_REQUIRES " cairo cairo-ft cairo-pdf")
 endif()

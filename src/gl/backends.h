@@ -6,10 +6,6 @@
 
 namespace obscura::gl {
 
-/// A shared library by its name, as dlopen gives it; null where there is none. Throws std::bad_alloc where
-/// there is no memory for it.
-void* opened(const char* library);
-
 /// A context of Mesa's off-screen library, opened at run time. Throws gl::Error.
 std::unique_ptr<Context> create_osmesa();
 

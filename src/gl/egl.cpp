@@ -8,6 +8,7 @@
 #include "gl/backends.h"
 #include "gl/error.h"
 #include "gl/functions.h"
+#include "media/opened.h"
 
 namespace obscura::gl {
 namespace {
@@ -27,7 +28,7 @@ struct EglLibrary {
   // opened and initialised once for the process, never terminated: other threads' contexts live on the same
   // display
   EglLibrary() {
-    void* handle = opened("libEGL.so.1");
+    void* handle = media::opened("libEGL.so.1");
     if (!handle) throw Error("EGL: libEGL.so.1 cannot be opened (packages libegl1 and libgl1-mesa-dri)");
     const auto find = [&](auto& f, const char* name) {
       f = reinterpret_cast<std::decay_t<decltype(f)>>(dlsym(handle, name));

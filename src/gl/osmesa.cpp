@@ -7,6 +7,7 @@
 
 #include "gl/backends.h"
 #include "gl/error.h"
+#include "media/opened.h"
 
 namespace obscura::gl {
 namespace {
@@ -27,7 +28,7 @@ struct OsMesaLibrary {
   OsMesaLibrary() {
     void* handle = nullptr;
     for (const char* name : {"libOSMesa.so.8", "libOSMesa.so"}) {
-      if (!handle) handle = opened(name);
+      if (!handle) handle = media::opened(name);
     }
     if (!handle) throw Error("OSMesa: libOSMesa.so.8 cannot be opened (package libosmesa6)");
     const auto find = [&](auto& f, const char* name) {

@@ -5,12 +5,9 @@
 #include <limits>
 #include <new>
 
-extern "C" {
-#include <libavutil/dict.h>
-}
-
 #include "media/codec.h"
 #include "media/error.h"
+#include "media/libav.h"
 
 namespace obscura::media {
 
@@ -52,18 +49,18 @@ void check_frame(const std::string& path, const MovieSpec& spec, const std::stri
 CodecContext open_encoder(const std::string& path, const MovieSpec& spec) {
   listen();
   const std::string name = encoder_name(path, spec, [](const std::string& one) {
-    return avcodec_find_encoder_by_name(one.c_str()) != nullptr;
+    return libav().avcodec_find_encoder_by_name(one.c_str()) != nullptr;
   });
-  const AVCodec* codec = avcodec_find_encoder_by_name(name.c_str());
-  const AVOutputFormat* muxer = av_guess_format(container(path).muxer.c_str(), nullptr, nullptr);
-  if (!muxer || avformat_query_codec(muxer, codec->id, FF_COMPLIANCE_NORMAL) != 1) {
+  const AVCodec* codec = libav().avcodec_find_encoder_by_name(name.c_str());
+  const AVOutputFormat* muxer = libav().av_guess_format(container(path).muxer.c_str(), nullptr, nullptr);
+  if (!muxer || libav().avformat_query_codec(muxer, codec->id, FF_COMPLIANCE_NORMAL) != 1) {
     throw Error(
         fmt::format("{}: the FFmpeg in use writes no .{} with {}", path, container(path).ending, name));
   }
   check_frame(path, spec, words(*codec));
   const auto options = encoder_options(path, spec, name);
 
-  CodecContext context(avcodec_alloc_context3(codec));
+  CodecContext context(libav().avcodec_alloc_context3(codec));
   if (!context) throw std::bad_alloc();
   context->width = spec.width;
   context->height = spec.height;
@@ -87,11 +84,11 @@ CodecContext open_encoder(const std::string& path, const MovieSpec& spec) {
   if (muxer->flags & AVFMT_GLOBALHEADER) context->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
 
   AVDictionary* dictionary = nullptr;
-  for (const auto& [key, value] : options) av_dict_set(&dictionary, key.c_str(), value.c_str(), 0);
-  const int code = avcodec_open2(context.get(), codec, &dictionary);
-  const AVDictionaryEntry* unknown = av_dict_get(dictionary, "", nullptr, AV_DICT_IGNORE_SUFFIX);
+  for (const auto& [key, value] : options) libav().av_dict_set(&dictionary, key.c_str(), value.c_str(), 0);
+  const int code = libav().avcodec_open2(context.get(), codec, &dictionary);
+  const AVDictionaryEntry* unknown = libav().av_dict_get(dictionary, "", nullptr, AV_DICT_IGNORE_SUFFIX);
   const std::string left = unknown ? unknown->key : "";
-  av_dict_free(&dictionary);
+  libav().av_dict_free(&dictionary);
   if (code < 0) throw Error(fmt::format("{}: {} cannot be started: {}", path, name, complaint(code)));
   if (!left.empty()) throw Error(fmt::format("{}: this {} has no option '{}'", path, name, left));
   return context;

@@ -17,7 +17,9 @@ namespace obscura::media {
 
 namespace {
 
-bool present(const std::string& name) { return avcodec_find_encoder_by_name(name.c_str()) != nullptr; }
+bool present(const std::string& name) {
+  return libav().avcodec_find_encoder_by_name(name.c_str()) != nullptr;
+}
 
 }  // namespace
 
@@ -69,14 +71,20 @@ std::int64_t MovieWriter::frames() const {
 }
 
 std::string libraries() {
-  const unsigned v = avcodec_version();
+  const std::string png = fmt::format("libpng {}", png_get_libpng_ver(nullptr));
+  try {
+    libav();
+  } catch (const Error& error) {
+    return fmt::format("{}\n{}", error.what(), png);
+  }
+  const unsigned v = libav().avcodec_version();
   std::vector<std::string> encoders;
   for (const char* name : {"libx264", "libopenh264", "libx265", "libvpx-vp9"}) {
     if (present(name)) encoders.push_back(name);
   }
-  return fmt::format(
-      "libavcodec {}.{}.{} ({}), encoders: {}\nlibpng {}", v >> 16, v >> 8 & 255, v & 255, avcodec_license(),
-      encoders.empty() ? "none" : fmt::format("{}", fmt::join(encoders, ", ")), png_get_libpng_ver(nullptr));
+  return fmt::format("libavcodec {}.{}.{} ({}), encoders: {}\n{}", v >> 16, v >> 8 & 255, v & 255,
+                     libav().avcodec_license(),
+                     encoders.empty() ? "none" : fmt::format("{}", fmt::join(encoders, ", ")), png);
 }
 
 }  // namespace obscura::media

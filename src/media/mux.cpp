@@ -11,15 +11,10 @@
 #include <new>
 #include <system_error>
 
-extern "C" {
-#include <libavutil/dict.h>
-#include <libavutil/mathematics.h>
-#include <libavutil/mem.h>
-}
-
 #include "media/codec.h"
 #include "media/encoder.h"
 #include "media/error.h"
+#include "media/libav.h"
 #include "media/tags.h"
 
 namespace obscura::media {
@@ -76,33 +71,33 @@ Muxer::Muxer(const std::string& path, const MovieSpec& spec)
   const CodecContext encoder = open_encoder(path, spec);
 
   AVFormatContext* format = nullptr;
-  if (avformat_alloc_output_context2(&format, nullptr, kind.muxer.c_str(), nullptr) < 0)
+  if (libav().avformat_alloc_output_context2(&format, nullptr, kind.muxer.c_str(), nullptr) < 0)
     throw std::bad_alloc();
   format_.reset(format);
   constexpr int kBuffer = 1 << 16;
-  auto* buffer = static_cast<unsigned char*>(av_malloc(kBuffer));
+  auto* buffer = static_cast<unsigned char*>(libav().av_malloc(kBuffer));
 #if LIBAVFORMAT_VERSION_MAJOR >= 61
-  format_->pb = avio_alloc_context(buffer, kBuffer, 1, this, nullptr, on_write, on_seek);
+  format_->pb = libav().avio_alloc_context(buffer, kBuffer, 1, this, nullptr, on_write, on_seek);
 #else
   constexpr auto write = [](void* self, std::uint8_t* bytes, int size) {
     return on_write(self, bytes, size);
   };
-  format_->pb = avio_alloc_context(buffer, kBuffer, 1, this, nullptr, write, on_seek);
+  format_->pb = libav().avio_alloc_context(buffer, kBuffer, 1, this, nullptr, write, on_seek);
 #endif
   // a close that a signal met has closed all the same
   format_->io_close2 = [](AVFormatContext*, AVIOContext* io) {
-    const int code = avio_close(io);
+    const int code = libav().avio_close(io);
     return code == AVERROR(EINTR) ? 0 : code;
   };
   // +faststart reads the file again, by this name
-  format_->url = av_strdup(("file:" + file_.temporary()).c_str());
-  stream_ = avformat_new_stream(format, nullptr);
+  format_->url = libav().av_strdup(("file:" + file_.temporary()).c_str());
+  stream_ = libav().avformat_new_stream(format, nullptr);
   if (!format_->pb || !format_->url || !stream_) throw std::bad_alloc();
   if (::lseek(file_.descriptor(), 0, SEEK_CUR) < 0) format_->pb->seekable = 0;
   // no name of the library's version, no random identities
   format_->flags |= AVFMT_FLAG_CUSTOM_IO | AVFMT_FLAG_BITEXACT;
 
-  if (avcodec_parameters_from_context(stream_->codecpar, encoder.get()) < 0) throw std::bad_alloc();
+  if (libav().avcodec_parameters_from_context(stream_->codecpar, encoder.get()) < 0) throw std::bad_alloc();
   stream_->time_base = encoder->time_base;
   stream_->avg_frame_rate = stream_->r_frame_rate = encoder->framerate;
   stream_->sample_aspect_ratio = {1, 1};
@@ -111,17 +106,17 @@ Muxer::Muxer(const std::string& path, const MovieSpec& spec)
   if (quicktime && encoder->codec_id == AV_CODEC_ID_HEVC)
     stream_->codecpar->codec_tag = MKTAG('h', 'v', 'c', '1');
   // what readers look for
-  if (spec.alpha && kind.muxer == "webm") av_dict_set(&stream_->metadata, "alpha_mode", "1", 0);
+  if (spec.alpha && kind.muxer == "webm") libav().av_dict_set(&stream_->metadata, "alpha_mode", "1", 0);
   if (const auto title = spec.tags.find("Title"); title != spec.tags.end()) {
-    av_dict_set(&format_->metadata, "title", title->second.c_str(), 0);
+    libav().av_dict_set(&format_->metadata, "title", title->second.c_str(), 0);
   }
   if (!spec.tags.empty())
-    av_dict_set(&format_->metadata, "comment", fitting_comment(spec.tags, kind).c_str(), 0);
+    libav().av_dict_set(&format_->metadata, "comment", fitting_comment(spec.tags, kind).c_str(), 0);
 }
 
 // the words in the form of the container: plain UTF-8, in mp4 and mov with their length before it
 void Muxer::add_text_track(const std::string& muxer) {
-  text_ = avformat_new_stream(format_.get(), nullptr);
+  text_ = libav().avformat_new_stream(format_.get(), nullptr);
   if (!text_) throw std::bad_alloc();
   AVCodecParameters& codec = *text_->codecpar;
   codec.codec_type = AVMEDIA_TYPE_SUBTITLE;
@@ -141,7 +136,8 @@ void Muxer::add_text_track(const std::string& muxer) {
                                            0,   0,   0,   18,               // the table of fonts
                                            'f', 't', 'a', 'b', 0, 1, 0, 1, 5, 'S', 'e', 'r', 'i', 'f'};
   codec.width = spec_.width, codec.height = spec_.height;
-  codec.extradata = static_cast<std::uint8_t*>(av_mallocz(entry.size() + AV_INPUT_BUFFER_PADDING_SIZE));
+  codec.extradata =
+      static_cast<std::uint8_t*>(libav().av_mallocz(entry.size() + AV_INPUT_BUFFER_PADDING_SIZE));
   if (!codec.extradata) throw std::bad_alloc();
   std::copy(entry.begin(), entry.end(), codec.extradata);
   codec.extradata_size = int(entry.size());
@@ -149,16 +145,16 @@ void Muxer::add_text_track(const std::string& muxer) {
 
 void Muxer::add_chapters() {
   if (spec_.chapters.empty()) return;
-  format_->chapters = static_cast<AVChapter**>(av_calloc(spec_.chapters.size(), sizeof(AVChapter*)));
+  format_->chapters = static_cast<AVChapter**>(libav().av_calloc(spec_.chapters.size(), sizeof(AVChapter*)));
   if (!format_->chapters) throw std::bad_alloc();
   for (const Chapter& each : spec_.chapters) {
-    auto* chapter = static_cast<AVChapter*>(av_mallocz(sizeof(AVChapter)));
+    auto* chapter = static_cast<AVChapter*>(libav().av_mallocz(sizeof(AVChapter)));
     if (!chapter) throw std::bad_alloc();
     format_->chapters[format_->nb_chapters++] = chapter;
     chapter->id = format_->nb_chapters;
     chapter->time_base = {1, 1000};
     chapter->start = std::llround(1000 * each.begin), chapter->end = std::llround(1000 * each.end);
-    av_dict_set(&chapter->metadata, "title", each.title.c_str(), 0);
+    libav().av_dict_set(&chapter->metadata, "title", each.title.c_str(), 0);
   }
 }
 
@@ -168,19 +164,19 @@ void Muxer::write_captions(double until) {
     const TextCue& cue = spec_.captions[said_++];
     const bool counted = text_->codecpar->codec_id == AV_CODEC_ID_MOV_TEXT;
     const std::size_t length = std::min<std::size_t>(cue.text.size(), 65535);
-    if (av_new_packet(packet_.get(), int(length + (counted ? 2 : 0))) < 0) throw std::bad_alloc();
+    if (libav().av_new_packet(packet_.get(), int(length + (counted ? 2 : 0))) < 0) throw std::bad_alloc();
     std::uint8_t* to = packet_->data;
     if (counted) *to++ = std::uint8_t(length >> 8), *to++ = std::uint8_t(length & 255);
     std::memcpy(to, cue.text.data(), length);
     const auto ticks = [&](double t) {
-      return av_rescale_q(std::llround(1000 * t), {1, 1000}, text_->time_base);
+      return libav().av_rescale_q(std::llround(1000 * t), {1, 1000}, text_->time_base);
     };
     packet_->stream_index = text_->index;
     packet_->flags = AV_PKT_FLAG_KEY;
     packet_->pts = packet_->dts = ticks(cue.begin);
     packet_->duration = ticks(cue.end) - packet_->pts;
-    const int code = av_write_frame(format_.get(), packet_.get());
-    av_packet_unref(packet_.get());
+    const int code = libav().av_write_frame(format_.get(), packet_.get());
+    libav().av_packet_unref(packet_.get());
     require(code, "write");
   }
 }
@@ -188,10 +184,11 @@ void Muxer::write_captions(double until) {
 // the header, with the codec's own as the first segment has it: an encoder's, or that of a file it lay in
 void Muxer::begin(const std::vector<std::uint8_t>& extradata) {
   AVCodecParameters& codec = *stream_->codecpar;
-  av_freep(&codec.extradata);
+  libav().av_freep(&codec.extradata);
   codec.extradata_size = 0;
   if (!extradata.empty()) {
-    codec.extradata = static_cast<std::uint8_t*>(av_mallocz(extradata.size() + AV_INPUT_BUFFER_PADDING_SIZE));
+    codec.extradata =
+        static_cast<std::uint8_t*>(libav().av_mallocz(extradata.size() + AV_INPUT_BUFFER_PADDING_SIZE));
     if (!codec.extradata) throw std::bad_alloc();
     std::copy(extradata.begin(), extradata.end(), codec.extradata);
     codec.extradata_size = int(extradata.size());
@@ -200,19 +197,19 @@ void Muxer::begin(const std::vector<std::uint8_t>& extradata) {
   add_chapters();
   AVDictionary* options = nullptr;
   const std::string muxer = format_->oformat->name;
-  if (muxer == "mp4" || muxer == "mov") av_dict_set(&options, "movflags", "+faststart", 0);
-  const int code = avformat_write_header(format_.get(), &options);
-  av_dict_free(&options);
+  if (muxer == "mp4" || muxer == "mov") libav().av_dict_set(&options, "movflags", "+faststart", 0);
+  const int code = libav().avformat_write_header(format_.get(), &options);
+  libav().av_dict_free(&options);
   require(code, "begin this movie");
   begun_ = true;
 }
 
 void Muxer::Close::operator()(AVFormatContext* format) const {
   if (format->pb) {
-    av_freep(&format->pb->buffer);
-    avio_context_free(&format->pb);
+    libav().av_freep(&format->pb->buffer);
+    libav().avio_context_free(&format->pb);
   }
-  avformat_free_context(format);
+  libav().avformat_free_context(format);
 }
 
 void Muxer::add(const Segment& segment) {
@@ -226,11 +223,11 @@ void Muxer::add(const Segment& segment) {
   const AVRational frame{int(spec_.fps_den), int(spec_.fps_num)};
   for (const Segment::Packet& one : segment.packets) {
     write_captions(double(one.pts + frames_) * double(frame.num) / frame.den);
-    if (av_new_packet(packet_.get(), int(one.bytes.size())) < 0) throw std::bad_alloc();
+    if (libav().av_new_packet(packet_.get(), int(one.bytes.size())) < 0) throw std::bad_alloc();
     std::memcpy(packet_->data, one.bytes.data(), one.bytes.size());
     if (!one.beside.empty()) {
-      std::uint8_t* to =
-          av_packet_new_side_data(packet_.get(), AV_PKT_DATA_MATROSKA_BLOCKADDITIONAL, one.beside.size());
+      std::uint8_t* to = libav().av_packet_new_side_data(packet_.get(), AV_PKT_DATA_MATROSKA_BLOCKADDITIONAL,
+                                                         one.beside.size());
       if (!to) throw std::bad_alloc();
       std::memcpy(to, one.beside.data(), one.beside.size());
     }
@@ -241,12 +238,12 @@ void Muxer::add(const Segment& segment) {
     const std::int64_t dts = one.dts + frames_;
     if (dts <= last_dts_) throw Error(path_ + ": segments whose packets do not follow each other");
     last_dts_ = dts;
-    packet_->pts = av_rescale_q(one.pts + frames_, frame, stream_->time_base);
-    packet_->dts = av_rescale_q(dts, frame, stream_->time_base);
+    packet_->pts = libav().av_rescale_q(one.pts + frames_, frame, stream_->time_base);
+    packet_->dts = libav().av_rescale_q(dts, frame, stream_->time_base);
     packet_->duration =
-        av_rescale_q(one.pts + frames_ + one.duration, frame, stream_->time_base) - packet_->pts;
-    const int code = av_write_frame(format_.get(), packet_.get());
-    av_packet_unref(packet_.get());
+        libav().av_rescale_q(one.pts + frames_ + one.duration, frame, stream_->time_base) - packet_->pts;
+    const int code = libav().av_write_frame(format_.get(), packet_.get());
+    libav().av_packet_unref(packet_.get());
     require(code, "write");
   }
   frames_ += segment.frames;
@@ -255,8 +252,8 @@ void Muxer::add(const Segment& segment) {
 void Muxer::close(const std::string& instead) {
   listen();
   if (!begun_) throw Error(path_ + ": a movie of no frames");
-  require(av_write_trailer(format_.get()), "finish");
-  avio_flush(format_->pb);
+  require(libav().av_write_trailer(format_.get()), "finish");
+  libav().avio_flush(format_->pb);
   require(0, "finish");
   file_.place(true, instead);
 }

@@ -5,11 +5,6 @@
 #include <fstream>
 #include <iterator>
 
-extern "C" {
-#include <libavutil/dict.h>
-#include <libavutil/mathematics.h>
-}
-
 #include "media/codec.h"
 #include "media/error.h"
 #include "media/gif.h"
@@ -21,7 +16,7 @@ namespace obscura::media {
 namespace {
 
 struct CloseInput {
-  void operator()(AVFormatContext* format) const { avformat_close_input(&format); }
+  void operator()(AVFormatContext* format) const { libav().avformat_close_input(&format); }
 };
 
 using Input = std::unique_ptr<AVFormatContext, CloseInput>;
@@ -33,12 +28,12 @@ void require(int code, const std::string& path) {
 Input open(const std::string& path) {
   listen();
   AVFormatContext* opened = nullptr;
-  require(avformat_open_input(&opened, ("file:" + path).c_str(), nullptr, nullptr), path);
+  require(libav().avformat_open_input(&opened, ("file:" + path).c_str(), nullptr, nullptr), path);
   return Input(opened);
 }
 
 Tags tags_of(const AVFormatContext& format) {
-  const AVDictionaryEntry* said = av_dict_get(format.metadata, "comment", nullptr, 0);
+  const AVDictionaryEntry* said = libav().av_dict_get(format.metadata, "comment", nullptr, 0);
   return tags_of_comment(said ? said->value : "");
 }
 
@@ -46,7 +41,7 @@ Tags tags_of(const AVFormatContext& format) {
 Part packets_of(const std::string& path) {
   const Input format = open(path);
   // a whole movie may have a text track and chapters as well
-  const int found = av_find_best_stream(format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  const int found = libav().av_find_best_stream(format.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   if (found < 0) throw Error(path + ": no part of a movie");
   const AVStream& stream = *format->streams[found];
   const AVRational frame = av_inv_q(stream.avg_frame_rate);
@@ -59,22 +54,22 @@ Part packets_of(const std::string& path) {
   segment.extradata.assign(codec.extradata, codec.extradata + codec.extradata_size);
   const Packet packet = make_packet();
   int code;
-  while ((code = av_read_frame(format.get(), packet.get())) >= 0) {
+  while ((code = libav().av_read_frame(format.get(), packet.get())) >= 0) {
     if (packet->stream_index == found)
       segment.packets.push_back({{packet->data, packet->data + packet->size},
-                                 av_rescale_q(packet->pts, stream.time_base, frame),
-                                 av_rescale_q(packet->dts, stream.time_base, frame),
+                                 libav().av_rescale_q(packet->pts, stream.time_base, frame),
+                                 libav().av_rescale_q(packet->dts, stream.time_base, frame),
                                  1,
                                  (packet->flags & AV_PKT_FLAG_KEY) != 0,
                                  beside(*packet)});
-    av_packet_unref(packet.get());
+    libav().av_packet_unref(packet.get());
   }
   if (code != AVERROR_EOF) require(code, path);
   segment.frames = int(segment.packets.size());
   // Matroska says how long it is instead, and that at its end
   const std::int64_t said = stream.nb_frames > 0 || format->duration == AV_NOPTS_VALUE
                                 ? stream.nb_frames
-                                : av_rescale_q(format->duration, {1, AV_TIME_BASE}, frame);
+                                : libav().av_rescale_q(format->duration, {1, AV_TIME_BASE}, frame);
   if (segment.frames == 0 || segment.frames != said) throw Error(path + ": is not whole");
   return part;
 }

@@ -4,13 +4,6 @@
 
 #include <new>
 
-extern "C" {
-#include <libavutil/imgutils.h>
-#include <libavutil/opt.h>
-#include <libavutil/pixdesc.h>
-#include <libswscale/swscale.h>
-}
-
 #include "media/error.h"
 #include "media/libav.h"
 #include "media/tags.h"
@@ -33,8 +26,8 @@ struct MovieReader::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
-    sws_freeContext(scaler);
-    avformat_close_input(&format);
+    libav().sws_freeContext(scaler);
+    libav().avformat_close_input(&format);
   }
 
   [[noreturn]] void fail(int code) const {
@@ -48,7 +41,7 @@ struct MovieReader::Impl {
 namespace {
 
 std::string text(const AVDictionary* dictionary, const char* key) {
-  const AVDictionaryEntry* entry = av_dict_get(dictionary, key, nullptr, 0);
+  const AVDictionaryEntry* entry = libav().av_dict_get(dictionary, key, nullptr, 0);
   return entry ? entry->value : "";
 }
 
@@ -56,23 +49,25 @@ std::string text(const AVDictionary* dictionary, const char* key) {
 
 void MovieReader::Impl::open() {
   listen();
-  int code = avformat_open_input(&format, ("file:" + path).c_str(), nullptr, nullptr);
+  int code = libav().avformat_open_input(&format, ("file:" + path).c_str(), nullptr, nullptr);
   if (code < 0) throw Error(fmt::format("{}: cannot read: {}", path, complaint(code)));
-  code = avformat_find_stream_info(format, nullptr);
+  code = libav().avformat_find_stream_info(format, nullptr);
   if (code < 0) fail(code);
   const AVCodec* codec = nullptr;
-  code = av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  code = libav().av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   if (code < 0) throw Error(path + ": has no moving picture");
   stream = format->streams[code];
-  codec = avcodec_find_decoder(stream->codecpar->codec_id);
+  codec = libav().avcodec_find_decoder(stream->codecpar->codec_id);
   if (!codec)
-    throw Error(fmt::format("{}: no decoder of {}", path, avcodec_get_name(stream->codecpar->codec_id)));
+    throw Error(
+        fmt::format("{}: no decoder of {}", path, libav().avcodec_get_name(stream->codecpar->codec_id)));
 
-  decoder.reset(avcodec_alloc_context3(codec));
-  if (!decoder || avcodec_parameters_to_context(decoder.get(), stream->codecpar) < 0) throw std::bad_alloc();
+  decoder.reset(libav().avcodec_alloc_context3(codec));
+  if (!decoder || libav().avcodec_parameters_to_context(decoder.get(), stream->codecpar) < 0)
+    throw std::bad_alloc();
   decoder->err_recognition = AV_EF_EXPLODE;
   decoder->flags |= AV_CODEC_FLAG_BITEXACT;
-  code = avcodec_open2(decoder.get(), codec, nullptr);
+  code = libav().avcodec_open2(decoder.get(), codec, nullptr);
   if (code < 0) fail(code);
 
   facts.width = stream->codecpar->width;
@@ -81,7 +76,7 @@ void MovieReader::Impl::open() {
   facts.fps_num = rate.num;
   facts.fps_den = rate.den > 0 ? rate.den : 1;
   facts.frames = stream->nb_frames;
-  facts.codec = avcodec_get_name(stream->codecpar->codec_id);
+  facts.codec = libav().avcodec_get_name(stream->codecpar->codec_id);
   facts.tags = tags_of_comment(text(format->metadata, "comment"));
   const std::string title = text(format->metadata, "title");
   if (!title.empty()) facts.tags["Title"] = title;
@@ -90,15 +85,15 @@ void MovieReader::Impl::open() {
 // hands the decoder its next packet, or the end
 void MovieReader::Impl::feed() {
   for (;;) {
-    const int code = av_read_frame(format, packet.get());
+    const int code = libav().av_read_frame(format, packet.get());
     if (code == AVERROR_EOF) {
-      avcodec_send_packet(decoder.get(), nullptr);
+      libav().avcodec_send_packet(decoder.get(), nullptr);
       return;
     }
     if (code < 0) fail(code);
     const bool ours = packet->stream_index == stream->index;
-    const int sent = ours ? avcodec_send_packet(decoder.get(), packet.get()) : 0;
-    av_packet_unref(packet.get());
+    const int sent = ours ? libav().avcodec_send_packet(decoder.get(), packet.get()) : 0;
+    libav().av_packet_unref(packet.get());
     if (sent < 0) fail(sent);
     if (ours) return;
   }
@@ -106,23 +101,26 @@ void MovieReader::Impl::feed() {
 
 void MovieReader::Impl::convert_to(Image& image) {
   if (!scaler) {
-    scaler = sws_alloc_context();
+    scaler = libav().sws_alloc_context();
     if (!scaler) throw std::bad_alloc();
-    const auto set = [&](const char* key, std::int64_t value) { av_opt_set_int(scaler, key, value, 0); };
+    const auto set = [&](const char* key, std::int64_t value) {
+      libav().av_opt_set_int(scaler, key, value, 0);
+    };
     set("srcw", frame->width), set("srch", frame->height), set("src_format", frame->format);
     set("dstw", frame->width), set("dsth", frame->height), set("dst_format", AV_PIX_FMT_RGBA);
     // the same bytes on every processor; chroma where the file says, its centre where it is silent
     set("sws_flags", SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP | SWS_BITEXACT);
-    const AVPixFmtDescriptor* shape = av_pix_fmt_desc_get(AVPixelFormat(frame->format));
+    const AVPixFmtDescriptor* shape = libav().av_pix_fmt_desc_get(AVPixelFormat(frame->format));
     if (shape && shape->log2_chroma_w == 1 && shape->log2_chroma_h == 1) {
       set("src_h_chr_pos", frame->chroma_location == AVCHROMA_LOC_LEFT ? 0 : 128);
       set("src_v_chr_pos", 128);
     }
-    if (sws_init_context(scaler, nullptr, nullptr) < 0) throw Error(path + ": its pixels cannot be made RGB");
+    if (libav().sws_init_context(scaler, nullptr, nullptr) < 0)
+      throw Error(path + ": its pixels cannot be made RGB");
     const int matrix = frame->colorspace == AVCOL_SPC_UNSPECIFIED ? SWS_CS_ITU709 : frame->colorspace;
-    const int* table = sws_getCoefficients(matrix);
-    sws_setColorspaceDetails(scaler, table, frame->color_range == AVCOL_RANGE_JPEG, table, 1, 0, 1 << 16,
-                             1 << 16);
+    const int* table = libav().sws_getCoefficients(matrix);
+    libav().sws_setColorspaceDetails(scaler, table, frame->color_range == AVCOL_RANGE_JPEG, table, 1, 0,
+                                     1 << 16, 1 << 16);
   }
   if (frame->width != facts.width || frame->height != facts.height) {
     throw Error(fmt::format("{}: frame {} has another size than the first", path, frames));
@@ -132,7 +130,7 @@ void MovieReader::Impl::convert_to(Image& image) {
   image.pixels.resize(std::size_t(4) * frame->width * frame->height);
   std::uint8_t* to[4] = {image.pixels.data()};
   const int stride[4] = {4 * frame->width};
-  sws_scale(scaler, frame->data, frame->linesize, 0, frame->height, to, stride);
+  libav().sws_scale(scaler, frame->data, frame->linesize, 0, frame->height, to, stride);
 }
 
 MovieReader::MovieReader(const std::string& path) : impl_(new Impl(path)) { impl_->open(); }
@@ -146,7 +144,7 @@ bool MovieReader::next(Image& image) {
   Impl& m = *impl_;
   listen();
   int code;
-  while ((code = avcodec_receive_frame(m.decoder.get(), m.frame.get())) == AVERROR(EAGAIN)) m.feed();
+  while ((code = libav().avcodec_receive_frame(m.decoder.get(), m.frame.get())) == AVERROR(EAGAIN)) m.feed();
   if (code == AVERROR_EOF) {
     if (m.frames < m.facts.frames) {
       throw Error(fmt::format("{}: ends after {} of {} frames", m.path, m.frames, m.facts.frames));

@@ -27,7 +27,7 @@ class LibavEncoder {
     frame_->colorspace = context_->colorspace;
     frame_->color_range = context_->color_range;
     frame_->chroma_location = context_->chroma_sample_location;
-    if (av_frame_get_buffer(frame_.get(), 0) < 0) throw std::bad_alloc();
+    if (libav().av_frame_get_buffer(frame_.get(), 0) < 0) throw std::bad_alloc();
     segment_.extradata.assign(context_->extradata, context_->extradata + context_->extradata_size);
   }
 
@@ -35,7 +35,7 @@ class LibavEncoder {
     assert(image.width == frame_->width && image.height == frame_->height);
     listen();
     // the encoder may still hold the planes of the frame before
-    if (av_frame_make_writable(frame_.get()) < 0) throw std::bad_alloc();
+    if (libav().av_frame_make_writable(frame_.get()) < 0) throw std::bad_alloc();
     fill(image);
     frame_->pts = segment_.frames++;
     send(frame_.get());
@@ -75,13 +75,13 @@ class LibavEncoder {
 
   // hands over a frame, or the end, and takes what packets come back
   void send(const AVFrame* frame) {
-    int code = avcodec_send_frame(context_.get(), frame);
+    int code = libav().avcodec_send_frame(context_.get(), frame);
     if (code < 0) fail(code);
-    while ((code = avcodec_receive_packet(context_.get(), packet_.get())) >= 0) {
+    while ((code = libav().avcodec_receive_packet(context_.get(), packet_.get())) >= 0) {
       const AVPacket& p = *packet_;
       segment_.packets.push_back(
           {{p.data, p.data + p.size}, p.pts, p.dts, 1, (p.flags & AV_PKT_FLAG_KEY) != 0, beside(p)});
-      av_packet_unref(packet_.get());
+      libav().av_packet_unref(packet_.get());
     }
     if (code != AVERROR(EAGAIN) && code != AVERROR_EOF) fail(code);
   }

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """bundle.py WHEEL FOLDER: a wheel that needs no other package of the system, of one that pip made here.
 
-The libraries that the module needs, and OSMesa, which it opens by name, go into obscura.libs/, fonts into obscura/fonts/.
-Each library gets a name of its own, with a part of its checksum: another module of the same process that brings its
-own copy of, say, libavcodec has nothing to do with ours. Left to the system are glibc, libgcc and libstdc++, which cannot
+The libraries that the module needs, and OSMesa and FFmpeg's, which it opens by name, go into obscura.libs/, fonts into obscura/fonts/.
+Each library but those gets a name of its own, with a part of its checksum: another module of the same process that brings
+its own copy of, say, libpng has nothing to do with ours. Left to the system are glibc, libgcc and libstdc++, which cannot
 be there twice; the wheel's tag says how new glibc must be (PEP 600).
 
 The packages that all of this is from, their versions and their licenses lie beside the metadata. Needs patchelf and dpkg.
@@ -25,7 +25,7 @@ from pathlib import Path
 
 # glibc, and what is part of every C++ program
 SYSTEM = re.compile(r"(ld-linux.*|lib(c|m|dl|rt|pthread|util|resolv|mvec|stdc\+\+|gcc_s))\.so\.\d+$|linux-vdso")
-OPENED = "libOSMesa.so.8"
+OPENED = ["libOSMesa.so.8", "libavcodec.so", "libavformat.so", "libavutil.so", "libswscale.so"]  # the newest of FFmpeg's
 FONTS = ["Inter-Regular.otf", "Inter-Medium.otf", "Inter-Bold.otf", "STIX-Regular.otf", "STIX-Italic.otf", "STIX-BoldItalic.otf"]
 LICENSE = "GPL-3.0-or-later, with all that is bundled; obscura itself MIT"
 MORE = """
@@ -54,12 +54,14 @@ def needed(library: Path) -> dict[str, Path]:
     return found
 
 
-def opened() -> Path:
-    """The library that is opened by name, where the system's loader finds it."""
-    for line in run("/sbin/ldconfig", "-p").splitlines():
-        if line.split()[:1] == [OPENED]:
-            return Path(line.split()[-1])
-    sys.exit(f"bundle.py: no {OPENED} (apt-get install libosmesa6)")
+def opened(name: str) -> Path:
+    """A library that is opened by name, where the system's loader finds it; of several versions that of the headers."""
+    known = {line.split()[0]: Path(line.split()[-1]) for line in run("/sbin/ldconfig", "-p").splitlines() if "=>" in line}
+    if name not in known:
+        sys.exit(f"bundle.py: no {name} (apt-get install libosmesa6 libavformat-dev libswscale-dev)")
+    # libavcodec.so is a link to the library, whose own name it is opened by
+    own = re.search(r"SONAME.*\[(.*)\]", run("readelf", "-d", known[name]))[1]
+    return known.get(own, known[name])
 
 
 def own_name(name: str, path: Path) -> str:
@@ -69,10 +71,13 @@ def own_name(name: str, path: Path) -> str:
 
 def put_libraries(module: Path, folder: Path) -> list[Path]:
     """Copies what the module needs into a folder; answers where it is from."""
-    first = opened()
-    libraries = {**needed(module), **needed(first), OPENED: first}
+    by_name = [opened(name) for name in OPENED]
+    libraries = needed(module)
+    for library in by_name:
+        libraries |= needed(library)
+    libraries |= {library.name: library for library in by_name}
     names = {name: own_name(name, path) for name, path in libraries.items()}
-    names[OPENED] = OPENED
+    names |= {library.name: library.name for library in by_name}
     folder.mkdir()
 
     def point(library: Path, to: str) -> None:

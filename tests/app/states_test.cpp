@@ -253,7 +253,7 @@ between = ["lamp", [6, 4]]
   EXPECT_NEAR(state["joints"][0]["force"][1], 0.5 * 9.81, 1e-11);
 
   const Outcome csv = obscura("states scene.toml --at 0.5 --format csv");
-  EXPECT_NE(csv.out.find(",cord.force.x,cord.force.y\n"), std::string::npos);
+  EXPECT_NE(csv.out.find(",cord.force.x,cord.force.y,cord.torque\n"), std::string::npos);
 }
 
 TEST_F(States, NameTheSolver) {

@@ -16,7 +16,7 @@
 namespace obscura::scene {
 namespace {
 
-constexpr double kG = 9.81;
+constexpr double kFreeFall = 9.81;
 constexpr double kSmall = 1e-9;
 
 struct Way {
@@ -56,8 +56,8 @@ TEST(JointLoads, AWeldBearsTheBendingMomentOfABeam) {
                                 "'room']\nat = [0, 0{1}]\n",
                                 space ? ", 0.2" : "", space ? ", 0" : ""));
       const sim::Snapshot now = scene.at(0.5);
-      EXPECT_NEAR((now.joints[0].force - sim::Vec3(0, 2 * kG, 0)).norm(), 0, 1e-8) << way.name << space;
-      EXPECT_NEAR((now.joints[0].torque - sim::Vec3(0, 0, 2 * kG * 1.5)).norm(), 0, 1e-8)
+      EXPECT_NEAR((now.joints[0].force - sim::Vec3(0, 2 * kFreeFall, 0)).norm(), 0, 1e-8) << way.name << space;
+      EXPECT_NEAR((now.joints[0].torque - sim::Vec3(0, 0, 2 * kFreeFall * 1.5)).norm(), 0, 1e-8)
           << way.name << space;
     }
   }
@@ -71,8 +71,8 @@ TEST(JointLoads, TheRoomAsTheFirstEndBearsTheOpposite) {
                   "'weld'\nbetween = ['room', 'beam']\nat = [0, 0]\n");
     const sim::Snapshot now = scene.at(0.5);
     const double sign = scene.run->scene_info().joints[0].a < 0 ? -1 : 1;
-    EXPECT_NEAR(now.joints[0].force.y(), sign * 2 * kG, 1e-8) << way.name;
-    EXPECT_NEAR(now.joints[0].torque.z(), sign * 2 * kG * 1.5, 1e-8) << way.name;
+    EXPECT_NEAR(now.joints[0].force.y(), sign * 2 * kFreeFall, 1e-8) << way.name;
+    EXPECT_NEAR(now.joints[0].torque.z(), sign * 2 * kFreeFall * 1.5, 1e-8) << way.name;
   }
 }
 
@@ -113,9 +113,9 @@ TEST(JointLoads, AMotorThatHoldsItsSpeedBearsWhatHangsOnIt) {
       const sim::Snapshot now = scene.at(t);
       const double angle = 0.7 * t;
       EXPECT_NEAR(now.bodies[0].angle, angle, 1e-7) << way.name;
-      EXPECT_NEAR(now.joints[0].torque.z(), 2 * kG * std::cos(angle), 0.03) << way.name;
-      EXPECT_NEAR(now.energies.total() - begun, 2 * kG * std::sin(angle), 1e-6) << way.name;
-      EXPECT_NEAR(now.energies.work, 2 * kG * std::sin(angle), way.name == "iterative" ? 2e-4 : 1e-6)
+      EXPECT_NEAR(now.joints[0].torque.z(), 2 * kFreeFall * std::cos(angle), 0.03) << way.name;
+      EXPECT_NEAR(now.energies.total() - begun, 2 * kFreeFall * std::sin(angle), 1e-6) << way.name;
+      EXPECT_NEAR(now.energies.work, 2 * kFreeFall * std::sin(angle), way.name == "iterative" ? 2e-4 : 1e-6)
           << way.name;
     }
   }
@@ -213,8 +213,8 @@ TEST(JointLoads, AChainsWeldBearsTheBendingMoment) {
       "[[joint]]\nname = 'middle'\ntype = 'weld'\nbetween = ['two', 'one']\nat = [1, 0]\n"
       "[[chain]]\nof = ['one', 'two']\n");
   const sim::Snapshot now = scene.at(0.5);
-  EXPECT_NEAR(now.joints[0].torque.z(), (2 * 0.5 + 3 * 1.5) * kG, 1e-8);
-  EXPECT_NEAR(now.joints[1].torque.z(), 3 * 0.5 * kG, 1e-8);
+  EXPECT_NEAR(now.joints[0].torque.z(), (2 * 0.5 + 3 * 1.5) * kFreeFall, 1e-8);
+  EXPECT_NEAR(now.joints[1].torque.z(), 3 * 0.5 * kFreeFall, 1e-8);
 }
 
 // A weld that bears 30 N m under a beam that weighs 20 N m at rest, and more while a weight runs out on it:
@@ -229,8 +229,8 @@ TEST(JointLoads, ATorqueAboveItsMostBreaksAJoint) {
                                 most));
       return !scene.at(0.5).joints[0].broken;
     };
-    EXPECT_TRUE(held(2 * kG * 1.5 * 1.001)) << way.name;
-    EXPECT_FALSE(held(2 * kG * 1.5 * 0.999)) << way.name;
+    EXPECT_TRUE(held(2 * kFreeFall * 1.5 * 1.001)) << way.name;
+    EXPECT_FALSE(held(2 * kFreeFall * 1.5 * 0.999)) << way.name;
   }
 }
 
