@@ -452,7 +452,7 @@ TEST(Diagnostics, PlotsOfAFilmAreOfSomethingAndLeaveRoom) {
       "work, "
       "x, height, speed, vx, vy, angle, spin, length, push, acceleration, momentum, weight, "
       "normal_force, friction, net_force, spring_force, joint_force, drag, field, contact, blast, torque, "
-      "got 'warmth'");
+      "joint_torque, got 'warmth'");
   refused(
       "[[film.plot]]\nquantity = [\"energy\"]\nsize = 50\n[[film.plot]]\nquantity = [\"energy\"]\n[[ball]]",
       "a.toml:4:1: the plots take 80 percent of the picture: 75 is the most");
