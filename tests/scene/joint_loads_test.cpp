@@ -56,7 +56,8 @@ TEST(JointLoads, AWeldBearsTheBendingMomentOfABeam) {
                                 "'room']\nat = [0, 0{1}]\n",
                                 space ? ", 0.2" : "", space ? ", 0" : ""));
       const sim::Snapshot now = scene.at(0.5);
-      EXPECT_NEAR((now.joints[0].force - sim::Vec3(0, 2 * kFreeFall, 0)).norm(), 0, 1e-8) << way.name << space;
+      EXPECT_NEAR((now.joints[0].force - sim::Vec3(0, 2 * kFreeFall, 0)).norm(), 0, 1e-8)
+          << way.name << space;
       EXPECT_NEAR((now.joints[0].torque - sim::Vec3(0, 0, 2 * kFreeFall * 1.5)).norm(), 0, 1e-8)
           << way.name << space;
     }
@@ -161,6 +162,51 @@ TEST(JointLoads, CoaxialGearsReportTheirTorque) {
     EXPECT_NEAR(now.joints[2].torque.z(), -J * alpha / 4, kSmall) << way.name;
     EXPECT_NEAR(now.bodies[1].torque.z(), J * alpha / 2, kSmall) << way.name;
     EXPECT_NEAR(now.energies.total(), now.energies.work, 1e-8) << way.name;
+  }
+}
+
+// A gear's joints hold both wheels: what turns the one turns the other back, by the ratio; its teeth push
+// both.
+TEST(JointLoads, AGearReportsWhatItPutsOnBothItsWheels) {
+  for (const Way& way : kWays) {
+    TextRun scene(
+        flat(way, "gravity = [0, 0]\n") +
+        "[[ball]]\nname = 'p'\nradius = 0.5\nmass = 2\nposition = [0, 0]\n"
+        "[[ball]]\nname = 'q'\nradius = 1\nmass = 1\nposition = [1.5, 0]\n"
+        "[[joint]]\nname = 'one'\ntype = 'pin'\nbetween = ['p', 'room']\nmotor = { speed = 1e6, most = "
+        "0.5 }\n[[joint]]\nname = 'two'\ntype = 'pin'\nbetween = ['q', 'room']\n[[joint]]\nname = "
+        "'teeth'\ntype = 'gear'\njoints = ['one', 'two']\nratio = -2\n");
+    const sim::Snapshot now = scene.at(0.5);
+    const double J = 0.5, alpha = 0.5 / (0.25 + J / 4),
+                 tooth = J * alpha / 2;  // q's rim is 1 m from its axle
+    ASSERT_EQ(now.joints[2].holds.size(), 2u);
+    EXPECT_NEAR(now.joints[2].holds[0].torque.z(), -tooth * 0.5, kSmall) << way.name;
+    EXPECT_NEAR(now.joints[2].holds[1].torque.z(), -tooth, kSmall) << way.name;
+    EXPECT_NEAR((now.joints[2].holds[0].force + now.joints[2].holds[1].force).norm(), 0, kSmall) << way.name;
+    EXPECT_NEAR(now.joints[2].holds[0].force.norm(), tooth, kSmall) << way.name;
+    EXPECT_NEAR(now.bodies[1].torque.z(), -tooth, kSmall) << way.name;
+    EXPECT_NEAR(now.bodies[0].torque.z(), 0.5 - tooth * 0.5, kSmall) << way.name;
+    EXPECT_NEAR(now.bodies[0].held.norm(), 0, kSmall) << way.name;
+  }
+}
+
+// The rope of a block and tackle pulls at each place that it runs over.
+TEST(JointLoads, ARopePullsWhereItRunsOver) {
+  for (const Way& way : kWays) {
+    TextRun scene(flat(way) +
+                  "[[box]]\nname = 'load'\nsize = [1, 0.5]\nmass = 4\nposition = [0, 0]\n"
+                  "[[particle]]\nname = 'weight'\nmass = 2\nposition = [2, 3]\nradius = 0.1\n"
+                  "[[joint]]\ntype = 'pulley'\nbetween = [[-0.2, 4], 'weight']\n"
+                  "over = [{ body = 'load', local = [0, 0] }, [0.2, 4], [2, 4]]\n");
+    const std::size_t load = number_of(scene, "load");
+    const sim::Snapshot now = scene.at(0.3);
+    std::vector<sim::Snapshot::Joint::Hold> on;
+    for (const auto& hold : now.joints[0].holds)
+      if (hold.body == int(load)) on.push_back(hold);
+    ASSERT_EQ(on.size(), 1u) << way.name;
+    EXPECT_NEAR((on[0].place - now.bodies[load].position).norm(), 0, kSmall) << way.name;
+    EXPECT_NEAR((on[0].force - now.bodies[load].held).norm(), 0, kSmall) << way.name;
+    EXPECT_GT(on[0].force.y(), 1.9 * now.joints[0].force.norm()) << way.name;
   }
 }
 

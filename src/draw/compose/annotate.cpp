@@ -18,6 +18,7 @@
 namespace obscura::draw {
 namespace {
 
+constexpr double kBetweenArcs = 12;     // points
 constexpr double kFilmType = 24 / 8.5;  // page units a point at the weight 1, as of charts
 constexpr double kCone = 0.5;           // of the picture's shorter side: how long a friction cone is at most
 constexpr double kAxes = 0.36;          // of the picture's shorter side: axes in space
@@ -192,7 +193,7 @@ void Notes::arc(const At& at, const Place& place, double radius, double from, do
 // An arc with the way that it turns: in the plane over the body's middle; in space around it, about the axis,
 // which is dashed, and open away from the eye; its tip is before the body.
 void Notes::turn(const WordKey& key, const Marks::Vector& vector, const Reading& reading,
-                 const Formula& label, Color ink) {
+                 const Formula& label, Color ink, int among) {
   if (!(std::abs(reading.signed_value) > 1e-9)) return;
   const sim::SceneInfo::Body& body = cast_.bodies[std::size_t(vector.body)];
   const Point center = view_.page(reading.tail);
@@ -211,7 +212,7 @@ void Notes::turn(const WordKey& key, const Marks::Vector& vector, const Reading&
     const double reach = body.radius > 0        ? 1.6 * body.radius
                          : body.half.norm() > 0 ? 0.62 * body.half.head<2>().minCoeff()
                                                 : 0;
-    const double radius = std::clamp(scale * reach, 9 * point_, 24 * point_);
+    const double radius = std::clamp(scale * reach, 9 * point_, 24 * point_) + kBetweenArcs * among * point_;
     const auto at = [&](double a) { return Point(center + radius * Point(std::cos(a), -std::sin(a))); };
     const double low = 25 * std::numbers::pi / 180, high = 165 * std::numbers::pi / 180;
     const bool left = reading.signed_value > 0;
@@ -221,7 +222,8 @@ void Notes::turn(const WordKey& key, const Marks::Vector& vector, const Reading&
     around(at, {low, 0.8, 1.2, high, 1.6, 2.1});
   } else {
     const double reach = body.radius > 0 ? 1.4 * body.radius : 1.05 * body.half.norm();
-    const double radius = std::clamp(scale * reach, 12 * point_, 40 * point_), world = radius / scale;
+    const double radius = std::clamp(scale * reach, 12 * point_, 40 * point_) + kBetweenArcs * among * point_,
+                 world = radius / scale;
     const Vec3 axis = reading.value.normalized();
     Vec3 near = view_.sight(reading.tail);
     near -= axis.dot(near) * axis;
@@ -241,14 +243,19 @@ void Notes::turn(const WordKey& key, const Marks::Vector& vector, const Reading&
 
 void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
   const Color ink = color_of(vector, colours_);
-  for (const Reading& reading : readings(vector, cast_, now_)) {
+  const std::vector<Reading> all = readings(vector, cast_, now_);
+  for (const Reading& reading : all) {
     if (!view_.before(reading.tail)) continue;
     hang(reading.tail, reading.tail);
     const WordKey key{WordKey::vector, index, reading.part};
     const std::string label = as_vector(vector.label);
     const auto set = [&](double value) { return this->set(key, label, value, unit(vector.quantity), ink); };
     if (turns(vector.quantity)) {
-      turn(key, vector, reading, set(reading.signed_value), ink);
+      // arcs about one place lie around each other
+      const auto among = std::count_if(all.data(), &reading, [&](const Reading& other) {
+        return (other.tail - reading.tail).norm() < 1e-9 * cast_.scale;
+      });
+      turn(key, vector, reading, set(reading.signed_value), ink, int(among));
       continue;
     }
     Formula label_set = set(reading.value.norm());

@@ -66,7 +66,7 @@ class Notes {
   void by_nodes(const std::vector<sim::Vec3>& way);
   void dashes(const sim::Vec3& from, const sim::Vec3& to);
   void turn(const WordKey& key, const Marks::Vector& vector, const Reading& reading, const Formula& label,
-            Color ink);
+            Color ink, int among);
   template <class At, class Place>
   void arc(const At& at, const Place& place, double radius, double from, double to, double width,
            Color color);

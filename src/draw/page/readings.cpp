@@ -76,15 +76,33 @@ std::vector<Reading> pulls(const sim::SceneInfo& cast, const sim::Snapshot& now,
   return found;
 }
 
-/// What each joint gives a body, at the point that it holds.
-std::vector<Reading> held(const sim::SceneInfo& cast, const sim::Snapshot& now, int body) {
+/// What each joint gives a body, at the point that it holds: the force, or the torque about that point.
+std::vector<Reading> held(const sim::SceneInfo& cast, const sim::Snapshot& now, int body,
+                          bool torque = false) {
   std::vector<Reading> found;
-  for (std::size_t i = 0; i < cast.joints.size(); ++i) {
+  const auto add = [&](const Vec3& place, const Vec3& value, std::size_t part) {
+    if (torque && value.isZero(0)) return;
+    Reading reading{place, value, 0, int(part)};
+    if (torque) reading.signed_value = cast.dimension == 2 ? value.z() : value.norm();
+    found.push_back(reading);
+  };
+  const std::size_t n = cast.joints.size();
+  for (std::size_t i = 0; i < n; ++i) {
     const sim::SceneInfo::Joint& joint = cast.joints[i];
-    if ((joint.a != body && joint.b != body) || now.joints[i].broken) continue;
-    const bool at_a = joint.a == body;
-    found.push_back(
-        {at_a ? now.joints[i].a : now.joints[i].b, (at_a ? 1 : -1) * now.joints[i].force, 0, int(i)});
+    const sim::Snapshot::Joint& it = now.joints[i];
+    if (it.broken) continue;
+    if (!joint.places.empty()) {
+      std::size_t part = i;
+      for (const sim::Snapshot::Joint::Hold& hold : it.holds) {
+        if (hold.body != body) continue;
+        add(hold.place, torque ? hold.torque : hold.force, part);
+        part += n;
+      }
+      continue;
+    }
+    if (joint.a == body) add(it.a, torque ? it.torque : it.force, i);
+    if (joint.b == body)
+      add(it.b, torque ? Vec3(-it.torque - (it.a - it.b).cross(it.force)) : Vec3(-it.force), i);
   }
   return found;
 }
@@ -142,17 +160,8 @@ std::vector<Reading> readings(const Marks::Vector& vector, const sim::SceneInfo&
       return pulls(cast, now, vector.body, vector.quantity == Quantity::spring_force);
     case Quantity::joint_force:
       return held(cast, now, vector.body);
-    case Quantity::joint_torque: {
-      std::vector<Reading> found = held(cast, now, vector.body);
-      for (Reading& each : found) {
-        const std::size_t joint = std::size_t(each.part);
-        const double sign = cast.joints[joint].a == vector.body ? 1 : -1;
-        each.value = sign * now.joints[joint].torque;
-        each.signed_value = cast.dimension == 2 ? each.value.z() : each.value.norm();
-      }
-      std::erase_if(found, [](const Reading& each) { return each.value.isZero(0); });
-      return found;
-    }
+    case Quantity::joint_torque:
+      return held(cast, now, vector.body, true);
     case Quantity::contact:
     case Quantity::normal_force:
     case Quantity::friction:

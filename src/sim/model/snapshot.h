@@ -127,6 +127,12 @@ struct Snapshot {
     Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // where its ends are
     Vec3 force = Vec3::Zero();                // on its a, N
     Vec3 torque = Vec3::Zero();               // on its a about its place, N m
+    struct Hold {
+      int body = -1;
+      Vec3 place = Vec3::Zero(), force = Vec3::Zero();  // m, N
+      Vec3 torque = Vec3::Zero();                       // about that place, N m
+    };
+    std::vector<Hold> holds{};  // of a mechanism: what it puts on each body, where it holds it
     bool broken = false;
   };
   struct Contact {

@@ -195,7 +195,13 @@ class RunOf final : public Run {
     copy_ = state_;
     if (stepper_->partial_step(copy_, kFirst)) return;
     const Snapshot then = snapshot(model_, copy_, *stepper_, {0, kFirst}, kFirst / value(model_.rate));
-    for (std::size_t i = 0; i < now.joints.size(); ++i) now.joints[i].force = then.joints[i].force;
+    for (std::size_t i = 0; i < now.joints.size(); ++i) {
+      Snapshot::Joint& joint = now.joints[i];
+      joint.force = then.joints[i].force, joint.torque = then.joints[i].torque;
+      joint.holds = then.joints[i].holds;
+    }
+    for (std::size_t i = 0; i < now.bodies.size(); ++i)
+      now.bodies[i].held = then.bodies[i].held, now.bodies[i].torque = then.bodies[i].torque;
     for (Snapshot::Contact each : then.contacts) {
       if (!each.holds || !each.impulse.isZero(0)) continue;
       now.contacts.push_back(each);

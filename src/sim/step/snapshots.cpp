@@ -177,6 +177,32 @@ void hold(const Model<D>& model, const State<D>& state, Snapshot& now) {
     const double f = (unit.f.dot(on_a.f) + unit.n.dot(on_a.n)) / size;
     each_side(row[0], [&](int body, const Vec<D>& along, const AngularVec<D>& angular) {
       push(body, Wrench<D>{angular, along} * f);
+      // where it holds it: the end about whose place it turns it least
+      Snapshot::Joint::Hold held{body, to_3d<D>(state.x[body]), to_3d<D>(Vec<D>(f * along)), Vec3::Zero()};
+      double least = 1e300;
+      const auto end = [&](const End<D>& it) {
+        if (it.body != body) return;
+        const Vec<D> point = place(state, it);
+        const AngularVec<D> rest = angular - moment<D>(Vec<D>(point - state.x[body]), along);
+        if (rest.squaredNorm() >= least) return;
+        least = rest.squaredNorm();
+        held.place = to_3d<D>(point), held.torque = turning_3d<D>(AngularVec<D>(f * rest));
+      };
+      end(joint.a), end(joint.b);
+      for (const End<D>& it : joint.over) end(it);
+      // that of a gear's teeth, which the axles bear as well
+      if (joint.geared && along.isZero(0)) {
+        const double side = body == (*joint.geared)[0].a.body   ? 1
+                            : body == (*joint.geared)[1].a.body ? -1
+                                                                : 0;
+        held.force = side * to_3d<D>(on_a.f);
+      }
+      for (Snapshot::Joint::Hold& known : now.joints[i].holds) {
+        if (known.body != body || known.place != held.place) continue;
+        known.force += held.force, known.torque += held.torque;
+        return;
+      }
+      now.joints[i].holds.push_back(held);
     });
   }
 }
@@ -286,7 +312,6 @@ Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>
     }
   }
   if (blasting(state)) blow(model, state, now);
-  hold(model, state, now);
   drag(model, state, now);
   try {
     field(model, state, t, now);
@@ -309,6 +334,7 @@ Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>
     joint.broken = i < state.broken.size() && state.broken[i] != 0;
     now.joints.push_back(joint);
   }
+  hold(model, state, now);
   for (int i = 0; i < int(model.mice.size()); ++i) {
     Snapshot::Mouse mouse;
     mouse.pressed = stepper.pressed(i, at);
