@@ -97,7 +97,7 @@ Stepper<D>::Stepper(const Model<D>& model)
   if (!model.bonds.empty()) bonded_ = std::make_unique<BondedBodies<D>>(model, paths_);
   const auto let_go = [](const Drive<D>& drive) { return drive.release.has_value(); };
   if (std::any_of(model.drives.begin(), model.drives.end(), let_go)) {
-    lets_go_ = std::make_unique<Releases<D>>(model);
+    releases_ = std::make_unique<Releases<D>>(model);
     return;
   }
   if (model.collision != Collision::handout && !bonded_)
@@ -118,7 +118,7 @@ void Stepper<D>::begin(State<D>& state) {
     if (const int k = turning(state, body); k >= 0) state.spin[k].setZero();
   }
   if (events_) return events_->begin(state);
-  if (lets_go_) return lets_go_->begin(state);
+  if (releases_) return releases_->begin(state);
   try {
     drives_.put(state, time({state.step, 0}, model_.rate));
   } catch (const NotFinite&) {
@@ -150,21 +150,21 @@ bool Stepper<D>::fits(const State<D>& state) {
 
 template <int D>
 const Model<D>& Stepper<D>::model(const State<D>& state) const {
-  return events_ ? events_->model(state) : lets_go_ ? lets_go_->model(state) : model_;
+  return events_ ? events_->model(state) : releases_ ? releases_->model(state) : model_;
 }
 
 // after bodies have been let go, too: this stepper knows nothing of the steps before
 template <int D>
 void Stepper<D>::begin_anew(State<D>& state, double t) {
   if (events_) return events_->begin_anew(state, t);
-  if (lets_go_) return lets_go_->begin_anew(state, t);
+  if (releases_) return releases_->begin_anew(state, t);
   if (contact_) contact_->begin_anew();
   divergence_.start(state, t);
 }
 
 template <int D>
 void Stepper<D>::watch(Course<D>* course) {
-  if (lets_go_) lets_go_->watch(course);
+  if (releases_) releases_->watch(course);
   if (contact_) contact_->watch(course);
 }
 
@@ -179,14 +179,14 @@ std::optional<Trouble> Stepper<D>::step(State<D>& state) {
 template <int D>
 std::optional<Trouble> Stepper<D>::go(State<D>& state, double from, double to) {
   if (bonded_) return to < 1 ? bonded_->partial_step(state, to) : bonded_->step(state);
-  if (lets_go_) return lets_go_->advance(state, from, to);
+  if (releases_) return releases_->advance(state, from, to);
   return advance(state, from, to);
 }
 
 template <int D>
 std::optional<Trouble> Stepper<D>::after_step(const State<D>& state) {
   if (bonded_) return {};
-  return lets_go_ ? lets_go_->check_energy(state) : check_energy(state);
+  return releases_ ? releases_->check_energy(state) : check_energy(state);
 }
 
 template <int D>
@@ -204,7 +204,7 @@ bool Stepper<D>::may_gain(const State<D>& state) const {
 
 template <int D>
 std::optional<Trouble> Stepper<D>::diverges(const State<D>& state) const {
-  if (bonded_ || lets_go_ || events_ || !may_gain(state)) return {};
+  if (bonded_ || releases_ || events_ || !may_gain(state)) return {};
   return divergence_.check_energy(state, time({state.step, 0}, model_.rate));
 }
 
