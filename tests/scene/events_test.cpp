@@ -759,5 +759,19 @@ TEST(Events, MarksStandForTimes) {
   EXPECT_EQ(put.film.speed.frozen()[0].world, sim::rational(451524, 1'000'000));
 }
 
+// `event` promises exact times, and bonded bodies are known at the ends of steps.
+TEST(Events, OfBondsAreRefusedWhereTimesAreExact) {
+  const std::string pieces =
+      "[[box]]\nname = \"piece\"\nsize = [0.2, 0.2]\nposition = [1, 1]\ncopies = { count = 2, offset = [0.2, "
+      "0] }\n[[bond]]\nname = \"glue\"\nof = [\"piece[*]\"]\nbreaks = 30\n";
+  const std::string snaps = "[[when]]\nbreaks = \"glue\"\ndo = [{ mark = \"snap\" }]\n";
+  EXPECT_THAT(wrong_with("[physics]\ncollision = \"event\"\n" + pieces + snaps),
+              HasSubstr("at the end of a step"));
+  EXPECT_EQ(wrong_with("[physics]\ncollision = \"contact\"\n" + pieces + snaps), "");
+  EXPECT_EQ(wrong_with("[physics]\ncollision = \"event\"\n" + pieces +
+                       "[[when]]\ntime = 0.5\ndo = [{ stop = true }]\n"),
+            "");
+}
+
 }  // namespace
 }  // namespace obscura::scene
