@@ -108,6 +108,7 @@ struct Annotating {
   std::vector<Offered>* survey = nullptr;  // of a film: collects words instead of drawing them
   std::map<WordKey, ValueRange>* ranges = nullptr;  // collects their values
   const Look* look = nullptr;                       // has the bodies' own arrows, which words keep off
+  std::span<const std::vector<sim::Vec3>> behind{};  // what bodies leave behind them: trails and paths, too
 };
 
 /// The words of bodies that have some.

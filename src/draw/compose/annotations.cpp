@@ -169,6 +169,23 @@ std::vector<sim::Track::Point> thinned(const std::vector<sim::Track::Point>& all
   return needed;
 }
 
+// the ways behind bodies at a sample: their trails, through the samples before it, and paths
+std::vector<std::vector<sim::Vec3>> ways_behind(const Look& look, const std::vector<sim::Snapshot>& moments,
+                                                std::size_t k, const std::vector<WorldLine>& paths) {
+  std::vector<std::vector<sim::Vec3>> ways;
+  for (std::size_t i = 0; i < look.bodies.size() && i < moments[k].bodies.size(); ++i) {
+    if (!(look.bodies[i].trail > 0)) continue;
+    std::vector<sim::Vec3>& way = ways.emplace_back();
+    for (std::size_t j = k + 1; j-- > 0 && moments[j].time >= moments[k].time - look.bodies[i].trail;)
+      way.push_back(moments[j].bodies[i].position);
+  }
+  for (const WorldLine& path : paths) {
+    std::vector<sim::Vec3>& way = ways.emplace_back();
+    for (const WorldLine::Node& node : path.nodes) way.push_back(node.at);
+  }
+  return ways;
+}
+
 }  // namespace
 
 std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offered>>& samples,
@@ -182,6 +199,9 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
       if (at.empty()) order.push_back(each.key);
       at.emplace_back(k, &each);
     }
+  // what has one place cannot go out of the way of what has more
+  std::stable_partition(order.begin(), order.end(),
+                        [&](const WordKey& key) { return seen[key].front().second->places.size() == 1; });
   std::map<WordKey, LabelPlan::Course> planned;
   std::vector<std::vector<std::pair<const Offered*, int>>> taken(samples.size());
   for (const WordKey& key : order) {
@@ -363,8 +383,13 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
     for (std::size_t k = 0; k < moments.size(); ++k) {
       List unused;
       offered[k].clear();
-      Annotating how{
-          .lettering = lettering_, .film = films[k], .plan = &ranges, .survey = &offered[k], .look = &look_};
+      const auto behind = ways_behind(look_, moments, k, path_lines(marks_, paths_, moments[k], films[k]));
+      Annotating how{.lettering = lettering_,
+                     .film = films[k],
+                     .plan = &ranges,
+                     .survey = &offered[k],
+                     .look = &look_,
+                     .behind = behind};
       annotate(marks_, scales_, cast_, colours_, artist.projection(panel, moments[k]), moments[k], unused,
                how);
     }
