@@ -520,7 +520,7 @@ void Notes::name(int index, const Marks::Name& name, const Marks& marks) {
     double cost;  // points
   };
   const double s = std::numbers::sqrt2 / 2;
-  static const std::vector<Side> sides{{{0, -1}, 0}, {{0, 1}, 4},   {{1, 0}, 5}, {{-1, 0}, 6},
+  static const std::vector<Side> sides{{{0, -1}, 0}, {{0, 1}, 4},   {{1, 0}, 8}, {{-1, 0}, 9},
                                        {{s, -s}, 7}, {{-s, -s}, 8}, {{s, s}, 9}, {{-s, s}, 10}};
   std::vector<Placing::Candidate> places;
   for (const double off : {0.0, 5.0, 12.0, 22.0, 34.0}) {

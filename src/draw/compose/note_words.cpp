@@ -22,7 +22,7 @@ constexpr double kAngle = 13;              // radius of an arc
 constexpr double kOffHatching = 2.5;       // from it to the words of a film
 constexpr double kCovered = 60;            // the cost of words over a body
 constexpr double kOnOutline = 8;           // of each unit of a body's outline under words of a film
-constexpr double kOnTrail = 0.4;           // of each unit of a trail or path under words
+constexpr double kOnTrail = 0.8;           // of each unit of a trail or path under words
 constexpr double kNameCovered = 6;         // as against the cost of other words over something
 
 constexpr std::uint8_t kPlate = 150;  // how much of what lies under the words of a film is covered
