@@ -106,8 +106,8 @@ TEST(Standing, PartsThatLieAgainstEachOtherHaveNoSeam) {
   sight.add(box({0.5, 1, 0.5}).placed(Eigen::Matrix3d::Identity(), {0, -1, 0}), 1, 3);
   sight.finish();
   HiddenLines::Parts parts;
-  const Vec3 front = Vec3::UnitZ(), below = -Vec3::UnitY();
-  const std::array<Vec3, 1> flush{front}, other{below};
+  const Vec3 front = Vec3::UnitZ(), aslant = Vec3(0, -1, 1).normalized();
+  const std::array<Vec3, 1> flush{front}, other{aslant};
   sight.seen({-2, 0, 0.5}, {2, 0, 0.5}, 0, -1, parts, flush);
   ASSERT_EQ(parts.size(), 2u) << "beside the post";
   EXPECT_NEAR(parts[0].second, 0.375, 0.005);
@@ -116,6 +116,24 @@ TEST(Standing, PartsThatLieAgainstEachOtherHaveNoSeam) {
   EXPECT_TRUE(parts.empty()) << "the post's own rim";
   sight.seen({-2, 0, 0.5}, {2, 0, 0.5}, 0, -1, parts, other);
   EXPECT_EQ(parts.size(), 1u) << "no face goes on there";
+}
+
+/// The rim of an end that lies against another part, where both have the same outline: seen from the left and
+/// above, a post's end under a beam has an edge along the far side. It left a notch in the outline.
+TEST(Standing, AnEndThatIsCoveredHasNoRim) {
+  Camera camera = side();
+  camera.azimuth = -10, camera.elevation = 8, camera.projection = Camera::Projection::orthographic;
+  const CameraProjection lens = lens_at(camera, {Vec3::Zero(), 9.6}, {0, 0, 1920, 1080}, 0);
+  for (const bool one : {true, false}) {
+    HiddenLines sight(lens);
+    sight.add(box({2, 0.5, 0.02}).placed(Eigen::Matrix3d::Identity(), {0, 0.5, 0}), 0, one ? 3 : 0);
+    sight.add(box({0.5, 1, 0.02}).placed(Eigen::Matrix3d::Identity(), {1.5, -1, 0}), 1, one ? 3 : 1);
+    sight.finish();
+    HiddenLines::Parts parts;
+    const std::array<Vec3, 1> end{Vec3::UnitY()};
+    sight.seen({2, 0, 0.02}, {2, 0, -0.02}, 1, -1, parts, end);
+    EXPECT_EQ(parts.empty(), one);
+  }
 }
 
 /// A ball on a rope hangs from a plate; on a rod that stands on the ground it does not, nor seen from above,

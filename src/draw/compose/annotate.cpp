@@ -28,7 +28,7 @@ constexpr double kFull = 0.5;        // of an arrow's growth: from here on its w
 constexpr double kOutOfBall = 0.35;  // of a ball's radius: how far beyond it an arrow's words are as strong
 
 constexpr std::size_t kManyNames = 40;                 // from here on a name stands above its body or below
-constexpr double kBeside = 1.7, kBesideInPrint = 2.1;  // gaps: from an arrow to its words
+constexpr double kBeside = 2.3, kBesideInPrint = 2.1;  // gaps: from an arrow to its words
 constexpr double kNameGap = 1.3;                       // from a body to its name, as against others
 constexpr double kBesideArrows = 4;                    // points: the cost of a place that turns with an arrow
 constexpr double kSteady = 0.25;  // of its greatest length: an arrow that is never shorter
@@ -462,6 +462,7 @@ void Notes::label(int index, const Marks::Label& label) {
   // in a film beside the body, not on it
   double gap = gap_;
   if (film() && label.at.body >= 0) {
+    gap *= kNameGap;
     const sim::SceneInfo::Body& body = cast_.bodies[std::size_t(label.at.body)];
     const double reach = body.radius > 0 ? body.radius : body.half.norm();
     gap += std::max(0.0, view_.scale_at(place(label.at, now_)) * (reach - label.at.local.norm()));
@@ -526,7 +527,7 @@ void Notes::name(int index, const Marks::Name& name, const Marks& marks) {
     double cost;  // points
   };
   const double s = std::numbers::sqrt2 / 2;
-  static const std::vector<Side> sides{{{0, -1}, 0}, {{0, 1}, 4},   {{1, 0}, 5}, {{-1, 0}, 6},
+  static const std::vector<Side> sides{{{0, -1}, 0}, {{0, 1}, 4},   {{1, 0}, 8}, {{-1, 0}, 9},
                                        {{s, -s}, 7}, {{-s, -s}, 8}, {{s, s}, 9}, {{-s, s}, 10}};
   std::vector<Placing::Candidate> places;
   for (const double off : {0.0, 5.0, 12.0, 22.0, 34.0}) {

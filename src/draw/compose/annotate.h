@@ -106,8 +106,9 @@ struct Annotating {
   double film = std::numeric_limits<double>::quiet_NaN();  // s of the film; not a number: of none
   const LabelPlan* plan = nullptr;         // of a film; none: words find their places in this one picture
   std::vector<Offered>* survey = nullptr;  // of a film: collects words instead of drawing them
-  std::map<WordKey, ValueRange>* ranges = nullptr;  // collects their values
-  const Look* look = nullptr;                       // has the bodies' own arrows, which words keep off
+  std::map<WordKey, ValueRange>* ranges = nullptr;   // collects their values
+  const Look* look = nullptr;                        // has the bodies' own arrows, which words keep off
+  std::span<const std::vector<sim::Vec3>> behind{};  // what bodies leave behind them: trails and paths, too
 };
 
 /// The words of bodies that have some.

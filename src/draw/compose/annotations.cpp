@@ -21,40 +21,46 @@ constexpr double kWay = 0.12;                    // of each unit of its way
 constexpr double kSpeed = 1.7;                   // page units a frame that a label moves by itself
 constexpr double kQuickest = 0.3, kSlowest = 4;  // s: a change
 constexpr double kShortest = 0.6;                // of the length that an arrow would have
-constexpr double kPathError = 0.2;               // page units
-constexpr double kFaintest = 0.22;               // of a path's oldest end
-constexpr double kShared = 40;                   // points: of lying on another label
-constexpr double kOver = 8;                      // of each unit of its own arrow that it passes over
-constexpr double kTouches = 120;                 // page units: of touching it on the way
+constexpr double kHeadWide = 10;    // page units: of an arrow's head, which is wider than its line
+constexpr double kPathError = 0.2;  // page units
+constexpr double kFaintest = 0.22;  // of a path's oldest end
+constexpr double kShared = 80;      // points: of lying on another label
+constexpr double kOver = 8;         // of each unit of its own arrow that it passes over
+constexpr double kTouches = 120;    // page units: of touching it on the way
 
 // In the plane: shortens the arrows of a kind so that those of a film end below the room's ceiling, beyond
-// which the title stands. Of one that would have to be much shorter the head is at the edge.
-void keep_below_the_top(const Marks& marks, const sim::SceneInfo& cast,
-                        const std::vector<sim::Snapshot>& moments, const Illustrator& artist,
-                        Scales& scales) {
-  Scales part{1, 1, 1, 1, 1};
+// which the title stands. Of one that would have to be much shorter the head is at the edge. They end above
+// the floor, too, if all of them then do; not where a slope is what they cross.
+void keep_in_the_room(const Marks& marks, const sim::SceneInfo& cast,
+                      const std::vector<sim::Snapshot>& moments, const Illustrator& artist, Scales& scales) {
+  Scales part{1, 1, 1, 1, 1}, above{1, 1, 1, 1, 1};
   for (const sim::Snapshot& now : moments) {
     const Projection view = artist.projection(0, now);
     if (!view.view()) return;
     // its ceiling on the page, or the page's upper edge
-    double top = view.window().y;
-    for (const sim::SceneInfo::Wall& wall : cast.walls)
+    double top = view.window().y, floor = 1e300;
+    bool slopes = false;
+    for (const sim::SceneInfo::Wall& wall : cast.walls) {
       if (wall.normal.y() < -0.99 * wall.normal.norm()) top = std::max(top, view.page(wall.point).y());
+      if (wall.normal.y() > 0.99 * wall.normal.norm()) floor = std::min(floor, view.page(wall.point).y());
+      slopes = slopes || (wall.normal.x() != 0 && wall.normal.y() > 0);
+    }
     for (const Marks::Vector& vector : marks.vectors) {
       const double* scale = scale_of(vector.quantity, scales);
-      double* least = scale_of(vector.quantity, part);
+      double *least = scale_of(vector.quantity, part), *shortest = scale_of(vector.quantity, above);
       if (!scale) continue;
       for (const Reading& reading : readings(vector, cast, now)) {
         const double tail = view.page(reading.tail).y(),
                      tip = view.page(reading.tail + *scale * reading.value).y();
         if (const double fits = (tail - top) / (tail - tip); tail > top && tip < top && fits > kShortest)
           *least = std::min(*least, fits);
+        if (tip > floor && !slopes) *shortest = std::min(*shortest, (floor - tail) / (tip - tail));
       }
     }
   }
   for (const auto member :
        {&Scales::velocity, &Scales::force, &Scales::impulse, &Scales::momentum, &Scales::acceleration})
-    scales.*member *= part.*member;
+    scales.*member *= above.*member > kShortest ? std::min(part.*member, above.*member) : part.*member;
 }
 
 double overlap(const Offered& a, int i, const Offered& b, int j) {
@@ -94,7 +100,8 @@ double cost_of_way(const Offered& label, std::size_t i, std::size_t j) {
   double cost = kWay * way(label, i, j);
   if (!label.arrow) return cost;
   for (const double part : {0.2, 0.4, 0.6, 0.8}) {
-    const double over = under(label.arrow->first, label.arrow->second, from + part * (to - from), label.size);
+    const double over = under(label.arrow->first, label.arrow->second, from + part * (to - from),
+                              label.size + Point(kHeadWide, kHeadWide));
     if (over > 0) cost += kTouches + kOver * over;
   }
   return cost;
@@ -169,6 +176,23 @@ std::vector<sim::Track::Point> thinned(const std::vector<sim::Track::Point>& all
   return needed;
 }
 
+// the ways behind bodies at a sample: their trails, through the samples before it, and paths
+std::vector<std::vector<sim::Vec3>> ways_behind(const Look& look, const std::vector<sim::Snapshot>& moments,
+                                                std::size_t k, const std::vector<WorldLine>& paths) {
+  std::vector<std::vector<sim::Vec3>> ways;
+  for (std::size_t i = 0; i < look.bodies.size() && i < moments[k].bodies.size(); ++i) {
+    if (!(look.bodies[i].trail > 0)) continue;
+    std::vector<sim::Vec3>& way = ways.emplace_back();
+    for (std::size_t j = k + 1; j-- > 0 && moments[j].time >= moments[k].time - look.bodies[i].trail;)
+      way.push_back(moments[j].bodies[i].position);
+  }
+  for (const WorldLine& path : paths) {
+    std::vector<sim::Vec3>& way = ways.emplace_back();
+    for (const WorldLine::Node& node : path.nodes) way.push_back(node.at);
+  }
+  return ways;
+}
+
 }  // namespace
 
 std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offered>>& samples,
@@ -182,6 +206,9 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
       if (at.empty()) order.push_back(each.key);
       at.emplace_back(k, &each);
     }
+  // what has one place cannot go out of the way of what has more
+  std::stable_partition(order.begin(), order.end(),
+                        [&](const WordKey& key) { return seen[key].front().second->places.size() == 1; });
   std::map<WordKey, LabelPlan::Course> planned;
   std::vector<std::vector<std::pair<const Offered*, int>>> taken(samples.size());
   for (const WordKey& key : order) {
@@ -332,7 +359,7 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
   const Projection first = artist.projection(0, moments.front());
   const double scale = artist.scale(moments.front());
   Scales chosen = draw::scales(marks_, cast_, moments, first.window(), scale);
-  keep_below_the_top(marks_, cast_, moments, artist, chosen);
+  keep_in_the_room(marks_, cast_, moments, artist, chosen);
   for (const auto member :
        {&Scales::velocity, &Scales::force, &Scales::impulse, &Scales::momentum, &Scales::acceleration})
     if (scales_.*member == 0) scales_.*member = chosen.*member;
@@ -363,8 +390,13 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
     for (std::size_t k = 0; k < moments.size(); ++k) {
       List unused;
       offered[k].clear();
-      Annotating how{
-          .lettering = lettering_, .film = films[k], .plan = &ranges, .survey = &offered[k], .look = &look_};
+      const auto behind = ways_behind(look_, moments, k, path_lines(marks_, paths_, moments[k], films[k]));
+      Annotating how{.lettering = lettering_,
+                     .film = films[k],
+                     .plan = &ranges,
+                     .survey = &offered[k],
+                     .look = &look_,
+                     .behind = behind};
       annotate(marks_, scales_, cast_, colours_, artist.projection(panel, moments[k]), moments[k], unused,
                how);
     }

@@ -22,8 +22,7 @@ constexpr double kAngle = 13;              // radius of an arc
 constexpr double kOffHatching = 2.5;       // from it to the words of a film
 constexpr double kCovered = 60;            // the cost of words over a body
 constexpr double kOnOutline = 8;           // of each unit of a body's outline under words of a film
-constexpr double kOnTrail = 0.4;           // of each unit of a trail under words
-constexpr double kFresh = 0.15;            // s: of a trail that words keep off
+constexpr double kOnTrail = 0.8;           // of each unit of a trail or path under words
 constexpr double kNameCovered = 6;         // as against the cost of other words over something
 
 constexpr std::uint8_t kPlate = 150;  // how much of what lies under the words of a film is covered
@@ -50,8 +49,8 @@ Notes::Notes(const sim::SceneInfo& cast, const Palette& colours, const Projectio
       millimetre_(kMillimetre * point_),
       normal_(kNormal * point_),
       angle_(kAngle * point_) {
-  // of a film the places are known
-  if (how_.plan && !how_.survey) return;
+  // of a film the places are known, or nothing but values is asked for
+  if (how_.ranges || (how_.plan && !how_.survey)) return;
   how_.survey || names ? avoid_areas() : avoid_bodies();
   avoid_own_arrows();
   if (!view_.view()) return;
@@ -243,7 +242,7 @@ void Notes::avoid_joints() {
   }
 }
 
-// the arrows and trails that bodies have by themselves
+// the arrows that bodies have by themselves, and what they leave behind them
 void Notes::avoid_own_arrows() {
   if (!how_.look) return;
   const Look& look = *how_.look;
@@ -254,10 +253,9 @@ void Notes::avoid_own_arrows() {
   for (std::size_t i = 0; i < look.bodies.size() && i < now_.bodies.size(); ++i) {
     const sim::Snapshot::Body& body = now_.bodies[i];
     if (look.bodies[i].velocity) arrow(body.position, body.position + look.velocity_scale * body.velocity);
-    // and the fresh end of a trail
-    if (look.bodies[i].trail > 0 && how_.survey)
-      line(body.position, body.position - std::min(kFresh, look.bodies[i].trail) * body.velocity, kOnTrail);
   }
+  for (const std::vector<Vec3>& way : how_.behind)
+    for (std::size_t k = 0; k + 1 < way.size(); ++k) line(way[k], way[k + 1], kOnTrail);
   const bool any =
       std::any_of(look.bodies.begin(), look.bodies.end(), [](const auto& b) { return b.contact; });
   if (!any) return;

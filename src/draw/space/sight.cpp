@@ -90,6 +90,7 @@ void HiddenLines::add(const Polyhedron& body, int number, int group) {
   for (std::size_t f = 0; f < body.faces.size(); ++f) {
     Eigen::Vector4d p = plane(lens_, body.faces[f].normal, body.vertices[body.faces[f].loop[0]]);
     front[f] = p.z() > 0;
+    if (group >= 0 && !front[f]) piece.backs.push_back(p);
     if (p.z() < 1e-6) continue;
     p.w() -= kBehind;
     planes_.push_back(p);
@@ -226,6 +227,11 @@ void HiddenLines::seen(const Vec3& from, const Vec3& to, int own, int too, Parts
         if (own_face.head<3>().dot(p.head<3>()) > kSamePlane && std::abs(own_face.w() - p.w()) < kSeam)
           return true;
     }
+    // or covers one: what the line bounds is not seen there
+    for (const Eigen::Vector4d& p : piece.backs)
+      for (const Eigen::Vector4d& own_face : planes_at_)
+        if (own_face.head<3>().dot(p.head<3>()) < -kSamePlane && std::abs(own_face.w() + p.w()) < kSeam)
+          return true;
     return false;
   };
 

@@ -31,7 +31,7 @@ class HiddenLines {
   /// The parts of the line from a to b (world) that no piece hides but those numbered `own` and `too`, each
   /// as its ends between 0 and 1 along the line's picture on the page. Empty too where a or b is behind the
   /// eye. `faces`: the normals of the faces of `own` that meet in the line: where another piece of its group
-  /// continues one of them, the line is a seam up to that piece's very edge.
+  /// continues or covers one of them, the line is a seam up to that piece's very edge.
   void seen(const sim::Vec3& a, const sim::Vec3& b, int own, int too, Parts& parts,
             std::span<const sim::Vec3> faces = {}) const;
   /// Whether a place is seen.
@@ -44,6 +44,7 @@ class HiddenLines {
     int number = 0, group = -1;
     int begin = 0, end = 0;  // into planes_
     double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    std::vector<Eigen::Vector4d> backs{};  // of its faces that are turned away, where it is one of a group
   };
   void close(Piece piece);
   void add_front(const sim::Vec3& normal, const sim::Vec3& point);
