@@ -124,6 +124,54 @@ TEST(SpaceGaps, AreNoneBeyondTheMarginAndAsNearAsTheSeparationWithin) {
   for (const int seen : kinds) EXPECT_GT(seen, 100);
 }
 
+// so that the solver need not look again at pairs that cannot have come near
+TEST(SpaceGaps, AreNoneWhileTheBodiesMoveLessThanTheirClearance) {
+  SpaceDice dice(12);
+  int apart = 0, edges = 0;
+  for (int n = 0; n < 40000; ++n) {
+    const bool boxes = n % 2 == 0;
+    const Shape<3> a = boxes ? brick({0.6, 0.8, 1}) : dice.solid(1),
+                   b = boxes ? brick({0.7, 0.5, 0.9}) : dice.solid(0.8);
+    const BodyMotion<3> at_a = dice.place(1), at_b = dice.place(1);
+    const double margin = dice.between(0.01, 0.1), radii = bounding_radius(a) + bounding_radius(b);
+    std::vector<ContactCandidate<3>> out;
+    Clearance clearance;
+    collide(0, a, at_a, 1, b, at_b, margin, out, clearance);
+    if (!out.empty() || clearance.apart < margin) continue;
+    ++apart, edges += clearance.per_turn > 1;
+    // as far as its words go, in any direction: half of it by moving, half by turning
+    const double spare = clearance.apart - margin, distance = (at_a.x - at_b.x).norm() + spare;
+    BodyMotion<3> then_a = at_a, then_b = at_b;
+    then_a.x += 0.25 * spare * dice.vec(1).normalized(), then_b.x += 0.25 * spare * dice.vec(1).normalized();
+    const double turn = 0.25 * std::min(spare / (distance + radii), 1.0) / clearance.per_turn;
+    for (BodyMotion<3>* at : {&then_a, &then_b}) {
+      at->room_from_body = matrix(exponential(Vec<3>(turn * dice.vec(1).normalized()))) * at->room_from_body;
+    }
+    EXPECT_TRUE(found(a, then_a, b, then_b, margin).empty()) << n << " " << clearance.per_turn;
+  }
+  EXPECT_GT(apart, 5000);
+  EXPECT_GT(edges, 200);
+}
+
+TEST(SpaceSeparation, AlongAnyDirectionIsNoMoreAndAlongTheNormalOfTheNearestGapIsAll) {
+  SpaceDice dice(13);
+  int inside = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const Shape<3> a = dice.solid(1), b = dice.solid(0.8);
+    const BodyMotion<3> at_a = dice.place(0.5), at_b = dice.place(0.5);
+    const double apart = separation(a, at_a, b, at_b);
+    EXPECT_LE(separation_along(dice.vec(1).normalized(), a, at_a, b, at_b), apart + 1e-12) << n;
+    const auto all = found(a, at_a, b, at_b, 0);
+    if (all.empty() || core(a).radius + core(b).radius > 0) continue;
+    ++inside;
+    double most = -1e300;
+    for (const auto& gap : all)
+      most = std::max(most, separation_along(evaluate(gap, at_a, at_b).normal, a, at_a, b, at_b));
+    EXPECT_NEAR(most, apart, 1e-12) << n << " " << a.index() << " " << b.index();
+  }
+  EXPECT_GT(inside, 500);
+}
+
 TEST(SpaceGaps, AreTheSameFromEitherSideAndInATurnedRoom) {
   SpaceDice dice(3);
   const Rotation<3> turn = matrix(exponential(Vec<3>(0.3, -1.1, 0.7)));

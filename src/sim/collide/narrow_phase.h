@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -165,6 +166,22 @@ template <int D>
 void collide(int a, const Shape<D>& shape_a, const BodyMotion<D>& at_a, int b, const Shape<D>& shape_b,
              const BodyMotion<D>& at_b, double margin, std::vector<ContactCandidate<D>>& out);
 
+/// How far two shapes of space stay apart along an axis that turns with them: why collide() found nothing. It
+/// finds nothing while `apart` less what they have moved since is at least its margin: by |d - d0|, d from
+/// centre to centre, and by `per_turn` (|d| + r_a + r_b) for each radian that either has turned, r their
+/// bounding radii.
+struct Clearance {
+  double apart = 1e300;  // m; -1e300: nothing is said
+  double per_turn = 1;
+
+  /// Of parts the least.
+  void add(double value, double loss) { apart = std::min(apart, value), per_turn = std::max(per_turn, loss); }
+};
+/// As collide() above, and says why it has found nothing.
+void collide(int a, const Shape<3>& shape_a, const BodyMotion<3>& at_a, int b, const Shape<3>& shape_b,
+             const BodyMotion<3>& at_b, double margin, std::vector<ContactCandidate<3>>& out,
+             Clearance& clearance);
+
 /// The gaps below `margin` between a shape and a wall, one for each vertex.
 template <int D>
 void collide(int a, const Shape<D>& shape, const BodyMotion<D>& at, int wall, const Wall<D>& half_space,
@@ -178,6 +195,10 @@ std::optional<ContactCandidate<3>> named_candidate(const ContactKey& key, const 
 /// Distance (m) between two shapes; if they overlap, minus the depth.
 template <int D>
 double separation(const Shape<D>& a, const BodyMotion<D>& at_a, const Shape<D>& b, const BodyMotion<D>& at_b);
+
+/// How far a stays from b along n, unit, from b to a, m: of two that overlap never more than separation().
+double separation_along(const Vec<3>& n, const Shape<3>& a, const BodyMotion<3>& at_a, const Shape<3>& b,
+                        const BodyMotion<3>& at_b);
 
 // for space in narrow_phase_space.cpp
 template <>

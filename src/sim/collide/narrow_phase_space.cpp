@@ -451,24 +451,33 @@ void nearest_features(const Couple& couple, const ReferenceFace* touching, doubl
   }
 }
 
-void solid_gaps(const Couple& couple, double margin, std::vector<ContactCandidate<3>>& out) {
+void solid_gaps(const Couple& couple, double margin, std::vector<ContactCandidate<3>>& out,
+                Clearance& clearance) {
   const Polyhedron &a = couple.of_a, &b = couple.of_b;
   const double far = margin + couple.radii();
-  const double radii = std::max(far, 0.0) + a.bounding_radius() + b.bounding_radius();
-  if ((a.middle() - b.middle()).squaredNorm() > radii * radii) return;
+  const double both = a.bounding_radius() + b.bounding_radius(), radii = std::max(far, 0.0) + both;
+  const double between = (a.middle() - b.middle()).squaredNorm();
+  if (between > radii * radii) return clearance.add(std::sqrt(between) - both - couple.radii(), 1);
 
   if (a.faces() + b.faces() == 0) {
+    clearance.add(-1e300, 1);
     if (couple.radii() > 0) nearest_features(couple, nullptr, margin, out);
     return;
   }
   FaceAxis by_a, by_b;
   EdgeAxis by_edges;
   if (b.faces()) by_b = greatest_separation(b, a, far);
-  if (by_b.value >= far) return;
+  if (by_b.value >= far) return clearance.add(by_b.value - couple.radii(), 1);
   if (a.faces()) by_a = greatest_separation(a, b, far);
-  if (by_a.value >= far) return;
+  if (by_a.value >= far) return clearance.add(by_a.value - couple.radii(), 1);
   if (a.edges() && b.edges()) by_edges = greatest_edge_separation(a, b, far);
-  if (by_edges.value >= far) return;
+  if (by_edges.value >= far) {
+    // of boxes any two edges along these axes; of others they may be farthest no more
+    if (!a.is_box() || !b.is_box()) return clearance.add(-1e300, 1);
+    const double sine = std::sqrt(a.along(by_edges.of_a).cross(b.along(by_edges.of_b)).squaredNorm());
+    return clearance.add(by_edges.value - couple.radii(), 1 + 2 / sine);
+  }
+  clearance.add(-1e300, 1);
 
   const bool base_is_b = b.faces() && by_b.value >= by_a.value;
   const ReferenceFace touching{base_is_b ? b : a, base_is_b ? a : b, base_is_b, base_is_b ? by_b : by_a,
@@ -517,13 +526,20 @@ bool keys_suffice(const Shape<3>& a, const Shape<3>& b) {
 template <>
 void collide(int a, const Shape<3>& shape_a, const BodyMotion<3>& at_a, int b, const Shape<3>& shape_b,
              const BodyMotion<3>& at_b, double margin, std::vector<ContactCandidate<3>>& out) {
+  Clearance clearance;
+  collide(a, shape_a, at_a, b, shape_b, at_b, margin, out, clearance);
+}
+
+void collide(int a, const Shape<3>& shape_a, const BodyMotion<3>& at_a, int b, const Shape<3>& shape_b,
+             const BodyMotion<3>& at_b, double margin, std::vector<ContactCandidate<3>>& out,
+             Clearance& clearance) {
   const int digits_a = digits(shape_a), digits_b = digits(shape_b);
   const std::size_t before = out.size();
   for (int i = 0; i < parts(shape_a); ++i) {
     const Polyhedron of_a(part(shape_a, i), at_a, at_b.x);
     for (int k = 0; k < parts(shape_b); ++k) {
       const Polyhedron of_b(part(shape_b, k), at_b, at_b.x);
-      solid_gaps({a, b, of_a, of_b, i, k, parts(shape_b), digits_a, digits_b}, margin, out);
+      solid_gaps({a, b, of_a, of_b, i, k, parts(shape_b), digits_a, digits_b}, margin, out, clearance);
     }
   }
   if (out.size() > before && !keys_suffice(shape_a, shape_b)) {
@@ -606,6 +622,19 @@ double separation(const Shape<3>& a, const BodyMotion<3>& at_a, const Shape<3>& 
     }
   }
   return least;
+}
+
+double separation_along(const Vec<3>& n, const Shape<3>& a, const BodyMotion<3>& at_a, const Shape<3>& b,
+                        const BodyMotion<3>& at_b) {
+  const auto reach = [](const Shape<3>& shape, const BodyMotion<3>& at, const Vec<3>& d) {
+    double most = -1e300;
+    for (int i = 0; i < parts(shape); ++i) {
+      const Core<3> one = core(part(shape, i));
+      most = std::max(most, reach_along(one, at.room_from_body, d) + one.radius);
+    }
+    return most;
+  };
+  return n.dot(at_a.x - at_b.x) - reach(a, at_a, -n) - reach(b, at_b, n);
 }
 
 }  // namespace obscura::sim

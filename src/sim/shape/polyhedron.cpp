@@ -172,6 +172,20 @@ Vec<3> Polyhedron::own_along(int edge) const {
   return way / std::sqrt(way.squaredNorm());
 }
 
+double reach_along(const Core<3>& core, const Rotation<3>& room_from_body, const Vec<3>& d) {
+  const Vec<3> own = room_from_body.transpose() * d;
+  const auto in_axes = [&](const Orientation<3>& turn) -> Vec<3> {
+    return turn == no_rotation<3>() ? own : Vec<3>(rotation<3>(turn).transpose() * own);
+  };
+  if (core.box) return own.dot(core.middle) + in_axes(core.box->turn).cwiseAbs().dot(core.box->half);
+  if (core.capsule)
+    return own.dot(core.middle) + std::fabs(in_axes(core.capsule->turn)[1]) * core.capsule->half;
+  if (core.corners.empty()) return own.dot(core.middle);
+  double most = -1e300;
+  for (const Vec<3>& corner : core.corners) most = std::max(most, own.dot(corner));
+  return most;
+}
+
 int Polyhedron::farthest(const Vec<3>& d) const {
   if (corners_ == 1) return 0;
   if (is_box()) {

@@ -79,6 +79,9 @@ class Polyhedron {
   std::vector<Edge> many_;
 };
 
+/// How far a core reaches along d from the centre of its body, without its radius, m.
+double reach_along(const Core<3>& core, const Rotation<3>& room_from_body, const Vec<3>& d);
+
 /// A face of one core, how far the corners of the other stay from it (m), and which is the nearest.
 struct FaceAxis {
   double value = -1e300;

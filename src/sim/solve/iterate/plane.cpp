@@ -29,7 +29,8 @@ constexpr double kStrained = 0.02;      // how far that is, of its half thicknes
 constexpr int kSettlingPairs = 20000;   // more, of unsettled pairs: pairs times iterations, at least
 constexpr int kSettlingIterations = 8;  // or as many as so many iterations of all pairs
 
-constexpr int kFewPairs = 300;  // accelerated
+constexpr int kFewPairs = 300;      // accelerated
+constexpr int kFewIterations = 50;  // more, of few pairs that others do not touch
 
 // iterations of push_out()
 constexpr int kProjections = 5;  // for each of a substep
@@ -243,9 +244,14 @@ void PlaneIterative::list_touching(StepPart<D>, std::vector<std::pair<int, int>>
 // the impact must pass through all of it in this substep. Those of few are accelerated by conjugate
 // directions (Silcowitz, Niebe and Erleben 2010).
 void PlaneIterative::settle_contacts() {
+  settle_all();
+  settle_few();
+}
+
+void PlaneIterative::settle_all() {
   const int count = int(batches_.size());
   const bool follows = awake_pairs_ <= kFewPairs;
-  active_bodies_.settled = settled_rate(closing_rate_);
+  active_bodies_.settled = settled_rate(closing_rate_), active_bodies_.groups.clear();
   const auto activate = [&] {
     active_bodies_.bodies.assign(turns_.size() + 1, plane::ActiveBodies::kNow);
     active_bodies_.bodies.back() = 0;
@@ -274,6 +280,52 @@ void PlaneIterative::settle_contacts() {
     change = changed;
     activate();
   }
+}
+
+// Of islands of few pairs those that are not at rest go on to a bound that does not hang on what moves
+// elsewhere, or how fast: something heavy that falls on something light is not to bounce, nor to be held the
+// worse where something fast is near. What iterations leave is solved exactly.
+void PlaneIterative::settle_few() {
+  if (few_stale_) find_few();
+  if (active_bodies_.settled <= kSettled || few_groups_.empty()) return;
+  active_bodies_.settled = kSettled, active_bodies_.groups = few_groups_, active_bodies_.listed = few_bodies_;
+  std::fill(active_bodies_.bodies.begin(), active_bodies_.bodies.end(), 0);
+  for (const int body : few_bodies_) active_bodies_.bodies[body] = plane::ActiveBodies::kNow;
+  for (int i = 0; i < kFewIterations; ++i) {
+    if (plane::iterate(batches_.data(), int(batches_.size()), poses_.data(), moving_.data(), constants_,
+                       active_bodies_) == 0)
+      return;
+  }
+}
+
+// islands of so few pairs that they may be solved exactly: their bodies, and the groups with lanes of theirs
+void PlaneIterative::find_few() {
+  const int n = int(turns_.size());
+  const auto moves = [&](int body) { return moving_[body].im > 0; };
+  Islands& sets = exhausted_.sets;
+  std::vector<int>& pairs = exhausted_.contacts;
+  sets.reset(n + 1), pairs.assign(n + 1, 0);
+  const auto each_pair = [&](auto&& act) {
+    for (const Pair& pair : pairs_.all()) {
+      if (pair.slot >= 0) act(pair, pair.b >= 0 ? pair.b : n);
+    }
+  };
+  each_pair([&](const Pair& pair, int b) {
+    if (moves(pair.a) && moves(b)) sets.join(pair.a, b);
+  });
+  for (const int body : joints_.bodies()) pairs[sets.root(body)] = kFewSolved + 1;
+  each_pair([&](const Pair& pair, int b) { ++pairs[sets.root(moves(pair.a) ? pair.a : b)]; });
+  few_bodies_.clear(), few_groups_.clear();
+  for (int i = 0; i < n; ++i) {
+    if (const int count = pairs[sets.root(i)]; moves(i) && count > 0 && count <= kFewSolved)
+      few_bodies_.push_back(i);
+  }
+  each_pair([&](const Pair& pair, int b) {
+    if (pairs[sets.root(moves(pair.a) ? pair.a : b)] <= kFewSolved) few_groups_.push_back(pair.slot / kLanes);
+  });
+  std::sort(few_groups_.begin(), few_groups_.end());
+  few_groups_.erase(std::unique(few_groups_.begin(), few_groups_.end()), few_groups_.end());
+  few_stale_ = false;
 }
 
 // what the last iteration has changed of the impulses, each by the masses that it moves; in the order of

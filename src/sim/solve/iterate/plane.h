@@ -80,6 +80,9 @@ class PlaneIterative final : public Iterative<2> {
   void write_lane(const plane::Pair& pair, const State<D>& state);
   void first_guess(State<D>& state);
   int fewest_iterations() const;
+  void settle_all();
+  void settle_few();
+  void find_few();
   double squared_change() const;
   void solve_together(std::span<const std::pair<int, int>> lanes);
   void integrate_unconstrained(State<D>& state, double t, double h);
@@ -136,6 +139,8 @@ class PlaneIterative final : public Iterative<2> {
   plane::LaneList slow_, fast_;
   plane::StepConstants constants_;  // of the substep
   plane::ActiveBodies active_bodies_;
+  std::vector<int> few_bodies_, few_groups_;              // of islands of few pairs
+  bool few_stale_ = true;                                 // pairs have come or gone since
   std::vector<plane::LaneImpulses> before_, directions_;  // by group, while iterations are accelerated
   // islands that iterations have not settled
   struct Exhausted {

@@ -39,7 +39,7 @@ void PlaneIterative::build_batches(const State<D>& state, bool known) {
     }
     return;
   }
-  version_ = pairs_.version();
+  version_ = pairs_.version(), few_stale_ = true;
   if (known && frozen_ == state.frozen && update_batches(state)) {
     impacts_.list_pairs(all, moving_);
     return;

@@ -304,7 +304,12 @@ OBSCURA_INLINE int iterate_all(ContactBatch* batches, int count, const Pose* pos
                                ActiveBodies* active = nullptr) {
   const V per_h = V{} + 1 / pace.h, none{};
   [[maybe_unused]] int pairs = 0;
-  for (ContactBatch* g = batches; g < batches + count; ++g) {
+  [[maybe_unused]] const int* listed = nullptr;
+  if constexpr (kSome) {
+    if (!active->groups.empty()) listed = active->groups.data(), count = int(active->groups.size());
+  }
+  for (int number = 0; number < count; ++number) {
+    ContactBatch* const g = batches + (listed ? listed[number] : number);
     if (!g->used) continue;
     [[maybe_unused]] unsigned char lanes = 0;
     if constexpr (kSome) {
@@ -569,9 +574,14 @@ int iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstan
                                : iterate_all<V2, false, false, true>(s, n, at, v, pace, nullptr, &active);
   // walls are never active
   active.bodies.back() = 0;
-  for (unsigned char& body : active.bodies) {
+  const auto next = [](unsigned char& body) {
     body = static_cast<unsigned char>((body & ActiveBodies::kNever) |
                                       (body & ActiveBodies::kNext ? ActiveBodies::kNow : 0));
+  };
+  if (active.groups.empty()) {
+    for (unsigned char& body : active.bodies) next(body);
+  } else {
+    for (const int body : active.listed) next(active.bodies[std::size_t(body)]);
   }
   return pairs;
 }

@@ -124,6 +124,8 @@ struct ActiveBodies {
   static constexpr unsigned char kNow = 1, kNext = 2, kNever = 4;
   double settled = 0;                 // 1/s
   std::vector<unsigned char> bodies;  // flags; one more for walls
+  // where not empty: the groups that alone are looked at, and all bodies of theirs that may be active
+  std::vector<int> groups, listed;
 };
 
 /// One iteration of the pairs of such bodies alone. Sets the flags for the next; returns the number of pairs.

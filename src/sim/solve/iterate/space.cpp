@@ -23,12 +23,13 @@ constexpr int kMostIterations = 40;      // of few touches
 constexpr int kFewestIterations = 4;     // of many
 constexpr int kTouchIterations = 20000;  // touches times iterations between
 constexpr double kSlow = 0.01;           // of the narrower body: so far a pair moves with the same features
-constexpr double kWider = 0.05;    // bounding radii: how far a body may come before pairs are sought anew
-constexpr double kSpare = 0.02;    // of their bounding radius: what two may come nearer by being struck
-constexpr int kPartRounds = 2000;  // gaps times rounds of pushing apart; 4 to 16 rounds at least,
-constexpr int kMostParts = 10000;  // and so many, until changes are
-constexpr double kParted = 1e-12;  // of what is wanted
-constexpr int kTempering = 5;      // rounds
+constexpr double kWider = 0.05;      // bounding radii: how far a body may come before pairs are sought anew
+constexpr double kSpare = 0.02;      // of their bounding radius: what two may come nearer by being struck
+constexpr int kPartRounds = 2000;    // gaps times rounds of pushing apart; 4 to 16 rounds at least,
+constexpr int kMostParts = 10000;    // and so many, until changes are
+constexpr double kParted = 1e-12;    // of what is wanted
+constexpr int kTempering = 5;        // rounds
+constexpr double kRounding = 1e-12;  // rad
 constexpr double kRoundingGain = 1e-9;  // of its kinetic energy: what an island may win by rounding
 
 }  // namespace
@@ -47,6 +48,7 @@ SpaceIterative::SpaceIterative(const Model<D>& model, const std::vector<Path<D>>
 bool SpaceIterative::find_contacts(StepPart<D> step) {
   impulses_.clear();
   prepare(step.state, step.t, step.h);
+  found_for_ = 0;
   find(step);
   return true;
 }
@@ -133,10 +135,13 @@ void SpaceIterative::report(StepPart<D> step) { add_impulses(step.state); }
 // poses, velocities and inverse inertias
 void SpaceIterative::prepare(const State<D>& state, double t, double h) {
   const int n = int(model_.bodies.size());
-  stances_.resize(n), moving_.assign(n + 1, {}), inactive_.resize(n);
+  stances_.resize(n), moving_.assign(n + 1, {}), inactive_.resize(n), turned_.resize(n);
   for (int i = 0; i < n; ++i) {
     const Body<D>& body = model_.bodies[i];
+    const Rotation<D> before = stances_[i].room_from_body;
     stances_[i] = body_motion(state, i);
+    // no matter has moved farther than this, of its distance from the centre
+    turned_[i] += std::sqrt(0.5 * (stances_[i].room_from_body - before).squaredNorm());
     inactive_[i] = body.fixed || state.frozen[i];
     response_.set(i, !inactive_[i]);
     if (!inactive_[i]) moving_[i] = PointBody<D>(body, stances_[i]);
@@ -185,6 +190,9 @@ void SpaceIterative::find(StepPart<D> step) {
   const int n = int(model_.bodies.size());
   bounds_.resize(n), margin_.resize(n), swing_.resize(n), touches_.clear();
   known_.swap(features_), features_.clear();
+  // the first substep begins where the step does: of what has been found for the step, what is near enough
+  const bool same = number == 0 && step.h < found_for_ && inactive_ == inactive_then_;
+  found_for_ = step.h;
   for (int i = 0; i < n; ++i) {
     bounds_[i] = bounds(model_.bodies[i].shape, stances_[i]);
     margin_[i] = margin(i, h), swing_[i] = bounding_radius_[i] * std::sqrt(moving_[i].w.squaredNorm());
@@ -210,10 +218,20 @@ void SpaceIterative::find(StepPart<D> step) {
     for (; pair != near_pairs_.end() && pair->first == a; ++pair) {
       const int b = pair->second;
       if (!bounds_[a].meets(bounds_[b])) continue;
+      Apart& apart = apart_[std::size_t(pair - near_pairs_.begin())];
+      const double within = pair_margin(a, b, h);
+      if (stays_apart(apart, a, b, within)) continue;
+      apart.clearance.apart = -1e300;
       gaps_.clear();
-      if (number == 0 || !keep_features(a, b, number, h, old, memo)) {
+      if (same) {
+        take_known(a, b, within, memo);
+      } else if (number == 0 || !keep_features(a, b, number, h, old, memo)) {
         const Body<D>& q = model_.bodies[b];
-        sim::collide(a, p.shape, stances_[a], b, q.shape, stances_[b], pair_margin(a, b, h), gaps_);
+        Clearance clearance;
+        sim::collide(a, p.shape, stances_[a], b, q.shape, stances_[b], within, gaps_, clearance);
+        if (gaps_.empty())
+          apart = {clearance, stances_[a].x - stances_[b].x,
+                   turned_[std::size_t(a)] + turned_[std::size_t(b)]};
       }
       if (gaps_.empty()) continue;
       const Material made = material(model_, a, b);
@@ -235,11 +253,35 @@ void SpaceIterative::find_near() {
   wide_ = bounds_, inactive_then_ = inactive_;
   for (std::size_t i = 0; i < n; ++i) {
     if (inactive_[i] && drives_.number(int(i)) < 0) continue;
-    const Vec<D> more = Vec<D>::Constant(kWider * bounding_radius_[i] + 3 * margin_[i]);
+    const Vec<D> more = Vec<D>::Constant(kWider * bounding_radius_[i] + margin_[i]);
     wide_[i].lower -= more, wide_[i].upper += more;
   }
   near_pairs_ = broad_.find(
       wide_, inactive_, [&](int a, int b) { return may_touch_(a, b); }, points_);
+  apart_.assign(near_pairs_.size(), {});
+}
+
+// Whether a pair that was apart is still without a look. It only saves looks: what collide() would find is
+// the same.
+bool SpaceIterative::stays_apart(const Apart& apart, int a, int b, double margin) const {
+  if (!(apart.clearance.apart > margin)) return false;
+  const Vec<D> between = stances_[a].x - stances_[b].x;
+  const double moved = std::sqrt((between - apart.between).squaredNorm());
+  const double reach =
+      std::sqrt(apart.between.squaredNorm()) + moved + bounding_radius_[a] + bounding_radius_[b];
+  const double turned = turned_[a] + turned_[b] - apart.turned + kRounding;
+  // edges that turn so far may be parallel then
+  if (!(turned * apart.clearance.per_turn < 1)) return false;
+  return apart.clearance.apart - moved - turned * apart.clearance.per_turn * reach >= margin;
+}
+
+// Those features of a pair that are known and less than `margin` apart, into gaps_. `memo`: as below.
+void SpaceIterative::take_known(int a, int b, double margin, std::size_t& memo) {
+  const auto before = [&](const ContactKey& key) { return key.a != a ? key.a < a : key.b < b; };
+  while (memo < known_.size() && before(known_[memo].key)) ++memo;
+  for (; memo < known_.size() && known_[memo].key.a == a && known_[memo].key.b == b; ++memo) {
+    if (known_[memo].value < margin) gaps_.push_back(known_[memo]);
+  }
 }
 
 // The features of a pair's contacts in the state, into gaps_; false where it has none, where they are to be

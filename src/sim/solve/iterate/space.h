@@ -71,9 +71,9 @@ class SpaceIterative final : public Iterative<3> {
     int last = 0;
     bool ends = false;
   };
-  // a gap then
+  // a gap then; the bodies until they are asked for at two other times
   struct Instant {
-    BodyMotion<D> a, b;
+    const BodyMotion<D>&a, &b;
     EvaluatedContact<D> now;
     double speed = 0;  // m/s
   };
@@ -89,9 +89,18 @@ class SpaceIterative final : public Iterative<3> {
     double turns = 0;                     // rad/s, likewise
   };
 
+  // a pair that collide() found apart, and how its bodies stood then
+  struct Apart {
+    Clearance clearance{-1e300, 1};
+    Vec<D> between = Vec<D>::Zero();  // m, from b's centre to a's
+    double turned = 0;                // rad, of both
+  };
+
   void prepare(const State<D>& state, double t, double h);
   void find(StepPart<D> step);
   void find_near();
+  bool stays_apart(const Apart& apart, int a, int b, double margin) const;
+  void take_known(int a, int b, double margin, std::size_t& memo);
   bool keep_features(int a, int b, std::int64_t number, double h, std::span<const Contact<D>>& old,
                      std::size_t& memo);
   void add(const ContactCandidate<D>& gap, const Material& pair);
@@ -176,6 +185,8 @@ class SpaceIterative final : public Iterative<3> {
       swing_;  // bodies: m, see margin(); m/s, of its farthest point by its spin alone
   std::vector<Bounds<D>> bounds_, wide_;  // of bodies in a step; and those that near_pairs_ are of
   std::vector<std::pair<int, int>> near_pairs_;
+  std::vector<Apart> apart_;    // one for each
+  std::vector<double> turned_;  // bodies: rad, how far each has turned since the first step
   std::vector<char> inactive_, inactive_then_, points_;
   std::vector<ContactCandidate<D>> gaps_;
   std::vector<ContactConstraint> touches_;  // ascending by key
@@ -184,6 +195,7 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<std::pair<int, int>> exhausted_;     // islands and their touches
   std::vector<ContactCandidate<D>> features_;      // theirs
   std::vector<ContactCandidate<D>> known_;         // and before: of a key always the same
+  double found_for_ = 0;                           // s: of what time within the step
   std::vector<ContactCandidate<D>> row_features_;  // while impacts are resolved: those of the rows
   std::vector<int> all_, some_;
   std::vector<Vec<D>> x_, x_free_, v_free_;

@@ -20,6 +20,7 @@ namespace {
 constexpr double kFarthestPoint = 3;  // bounding radii of both: how far from a body features of a pair touch
 constexpr double kWidest = 2.5;       // bounding radii of the smaller: across all where two bodies touch
 constexpr double kLeastPart = 1e-3;   // of what a root is in: how far from its ends it is looked for
+constexpr double kLevel = 1e-12;      // bounding radii: rounding of what is as deep
 constexpr int kRenewals = 4;          // of a gap's features in a step
 
 }  // namespace
@@ -90,10 +91,13 @@ SpaceIterative::Flown SpaceIterative::fly(int body, double t, double h) const {
 
 // a gap at a time: how wide, and how fast it changes
 SpaceIterative::Instant SpaceIterative::instant(int i, double t, double h) const {
-  Instant at;
   const ContactConstraint& touch = touches_[i];
-  at.a = flown(touch.a, t, h).stance, at.b = flown(touch.b, t, h).stance;
-  at.now = evaluate(features_[i], at.a, at.b);
+  Instant at{flown(touch.a, t, h).stance, flown(touch.b, t, h).stance, {}};
+  if (t == 0 && touch.renewals == 0 && when_[touch.a] < 0 && when_[touch.b] < 0) {
+    at.now.value = touch.gap, at.now.point = touch.point, at.now.normal = touch.n;
+  } else {
+    at.now = evaluate(features_[i], at.a, at.b);
+  }
   at.speed = at.now.normal.dot(at.a.velocity(at.now.point - at.a.x) - at.b.velocity(at.now.point - at.b.x));
   return at;
 }
@@ -193,7 +197,7 @@ double SpaceIterative::closing_time(int i, double h) {
 
 // the gaps of a pair at a time, by the features that are nearest then, into gaps_; how wide the least of them
 double SpaceIterative::find_features(int a, int b, double t, double h) {
-  const BodyMotion<D> at_a = flown(a, t, h).stance, at_b = flown(b, t, h).stance;
+  const BodyMotion<D>&at_a = flown(a, t, h).stance, &at_b = flown(b, t, h).stance;
   gaps_.clear();
   sim::collide(a, model_.bodies[a].shape, at_a, b, model_.bodies[b].shape, at_b, pair_margin(a, b, h), gaps_);
   double least = 1e300;
@@ -283,6 +287,15 @@ void SpaceIterative::find_turned_pairs(double h) {
     };
     const double turns = turned(touch.a) + turned(touch.b);
     if (least > turns || least - turns > -kTogether * bounding_radius_[touch.a]) continue;
+    // nothing lies deeper where they stay so far apart along the normal of a gap
+    bool apart = false;
+    for (int i = first; i < end && !apart; ++i) {
+      const Instant at = instant(i, h, h);
+      apart =
+          separation_along(at.now.normal, model_.bodies[touch.a].shape, at.a, model_.bodies[touch.b].shape,
+                           at.b) >= std::min(0.0, least) - kLevel * bounding_radius_[touch.a];
+    }
+    if (apart) continue;
     if (find_features(touch.a, touch.b, h, h) < std::min(0.0, least) - kTogether * bounding_radius_[touch.a])
       renew_features(first, 0, h, h);
   }
