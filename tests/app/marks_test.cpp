@@ -335,7 +335,7 @@ TEST(Marks, WordsKeepClearOfBodiesAndArrows) {
                                                               {"spring", 0},
                                                               {"atwood", 0},
                                                               {"crossed_fields", 0.004},
-                                                              {"pendulum", 0},
+                                                              {"pendulum", 0.003},
                                                               {"brachistochrone", 0.01},
                                                               {"block_and_tackle", 0},
                                                               {"drag", 0}}};

@@ -245,7 +245,10 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
   found.ghosts.resize(marks.ghosts.size());
   double next = 0, stride = kSample, kept = 0;
   bool diverges = false;
+  const bool all = !wanted.empty() || fits_run(scene);  // instants are looked at, not only those of labels
   for (const auto& [t, ghost] : instants) {
+    const double film = sim::value(scene.film.speed.film(t));
+    if (!all && ghost == kAxis && film < next - 1e-9 && t < times.back()) continue;
     auto outcome = run->at(t);
     if (std::holds_alternative<sim::Stopped>(outcome)) throw Interrupted();
     if (std::holds_alternative<sim::Trouble>(outcome)) break;
@@ -272,7 +275,6 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
     if (fits_run(scene)) watched.reach.add(watched.cast, now);
     for (std::size_t i = 0; i < wanted.size(); ++i)
       add(watched.cast, now, wanted[i], lines[i], watched.plots[i]);
-    const double film = sim::value(scene.film.speed.film(t));
     if (marks.empty() || film < next - 1e-9) continue;
     kept += bytes(now);
     found.samples.push_back({std::move(now), film});
@@ -348,8 +350,10 @@ Ahead ahead(const scene::Scene& scene) {
   const sim::Rational rate = std::visit([](const auto& world) { return world.model.rate; }, scene.world);
   const std::vector<sim::Rational> times = beats(scene, rate);
   std::vector<Watched> watched;
-  const bool needed = !wanted.empty() || !scene.film.marks.empty() || fitted;
-  if (runs.empty()) watched.push_back(watch(scene, wanted, times, colours));
+  // words that stand still need no run
+  const bool still = scene.film.marks.empty() || (runs.empty() && scene.film.marks.fixed());
+  const bool needed = !wanted.empty() || !still || fitted;
+  if (runs.empty() && needed) watched.push_back(watch(scene, wanted, times, colours));
   for (const Ahead::Run& run : runs)
     if (needed) watched.push_back(watch(run.scene, wanted, times, colours));
   if (!runs.empty() && needed) join_plots(runs, watched);
@@ -376,6 +380,7 @@ Ahead ahead(const scene::Scene& scene) {
       annotate({.charts = scene.film.over ? all.charts : draw::Charts()}, watched, runs);
     all.runs = std::make_shared<const std::vector<Ahead::Run>>(std::move(runs));
   } else if (!scene.film.marks.empty()) {
+    if (watched.empty()) watched.emplace_back();
     const draw::Scales given = given_scales(scene, watched.front().cast);
     all.annotations = annotations(scene, all, std::move(watched.front().marks), given);
   }

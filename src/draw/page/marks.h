@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -140,6 +141,14 @@ struct Marks {
   bool empty() const {
     return !axes && points.empty() && vectors.empty() && angles.empty() && lengths.empty() && cones.empty() &&
            labels.empty() && names.empty() && paths.empty() && ghosts.empty();
+  }
+  /// Whether all of them are words at places of the room, without values: they say the same of every run.
+  bool fixed() const {
+    Marks others = *this;
+    others.labels.clear();
+    return others.empty() && std::all_of(labels.begin(), labels.end(), [](const Label& label) {
+             return label.at.body < 0 && label.quantity.empty();
+           });
   }
 };
 
