@@ -254,6 +254,10 @@ between = ["lamp", [6, 4]]
 
   const Outcome csv = obscura("states scene.toml --at 0.5 --format csv");
   EXPECT_NE(csv.out.find(",cord.force.x,cord.force.y,cord.torque\n"), std::string::npos);
+  const Outcome whole = obscura("states scene.toml --measure cord.force@0.5");
+  ASSERT_EQ(whole.exit, 0) << whole.err;
+  EXPECT_NEAR(nlohmann::json::parse(whole.out)["measures"]["cord.force@0.5"].get<double>(), 0.5 * 9.81,
+              1e-11);
 }
 
 TEST_F(States, NameTheSolver) {

@@ -47,6 +47,34 @@ TEST(Trails, EndAtTheBodyAndUnderIt) {
   EXPECT_EQ(list.batches[1].kind, Kind::disc);
 }
 
+/// It crossed walls, hatching and plots.
+TEST(Rails, WithoutLimitsEndAtTheWalls) {
+  Made made = room(8, 4.5);
+  made.body(ShapeKind::box, {2, 1, 0}, 0.3);
+  sim::SceneInfo::Joint slider;
+  slider.kind = sim::JointKind::slider, slider.a = 0, slider.axis = sim::Vec3(0.6, 0.8, 0);
+  made.cast.joints.push_back(slider);
+  sim::Snapshot::Joint at;
+  at.a = at.b = {2, 1, 0};
+  made.now.joints.push_back(at);
+  for (const double upper : {1e300, 20.0}) {
+    made.cast.joints[0].upper = upper;
+    const Picture picture = made.picture();
+    const auto view = made.depictor().view(0);
+    double lowest = 1e300, highest = -1e300;
+    for (const Node& node : picture.moving.nodes)
+      lowest = std::min(lowest, (view.origin.y() - node.at.y()) / view.scale),
+      highest = std::max(highest, (view.origin.y() - node.at.y()) / view.scale);
+    EXPECT_NEAR(lowest, 0, 1e-9);
+    // limits are shown where they are
+    if (upper > 1e299) {
+      EXPECT_NEAR(highest, 4.5, 1e-9);
+    } else {
+      EXPECT_GT(highest, 1 + 0.8 * 20 - 1e-9);
+    }
+  }
+}
+
 /// LOOK: never paler than 15 % of the ink. Contrast as in WCAG 2: (a + 0.05) / (b + 0.05).
 TEST(Trails, TaperAndFadeButAreSeenToTheirEnds) {
   for (Theme theme : {Theme::paper, Theme::screen}) {

@@ -17,39 +17,6 @@ namespace {
 
 constexpr double kEarth = 9.81;
 
-// a mode and a solver, as [physics] has them
-struct Manner {
-  std::string name, keys;
-};
-const std::vector<Manner> kManners = {
-    {"contact", "[physics]\ncollision = \"contact\"\nsolver = \"direct\""},
-    {"event", "[physics]\ncollision = \"event\""},
-    {"iterative", "[physics]\ncollision = \"contact\"\nsolver = \"iterative\""},
-};
-
-std::string plane_without_walls(const Manner& manner, const std::string& room = "") {
-  return "duration = 1000\n[room]\nsize = [20, 20]\ncorner = [-10, -10]\nwalls = \"none\"\n" + room + "\n" +
-         manner.keys + "\n";
-}
-
-std::size_t body_called(const TextRun& scene, const std::string& name) {
-  const auto& all = scene.run->scene_info().bodies;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i].name == name) return i;
-  ADD_FAILURE() << name;
-  return 0;
-}
-
-// what parse() says against a text; empty: nothing
-std::string refusal(const std::string& text) {
-  try {
-    parse(text, "a.toml", {});
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
-
 const std::string kAtwood =
     "[[ball]]\nname = \"wheel\"\nradius = 0.5\nmass = 3\nposition = [0, 4]\n"
     "[[joint]]\ntype = \"pin\"\nbetween = [\"wheel\", \"room\"]\n"
@@ -62,8 +29,8 @@ TEST(Pulley, AtwoodsMachineAcceleratesAsItsMassesAndItsWheelSay) {
   const double a = (2 - 1) * kEarth / (1 + 2 + 1.5);  // a disc: I / R^2 = M / 2
   for (const Manner& manner : kManners) {
     TextRun scene(plane_without_walls(manner) + kAtwood);
-    const std::size_t left = body_called(scene, "left"), right = body_called(scene, "right"),
-                      wheel = body_called(scene, "wheel");
+    const std::size_t left = number_of(scene, "left"), right = number_of(scene, "right"),
+                      wheel = number_of(scene, "wheel");
     const double begun = scene.at(0).energies.total();
     for (const double t : {0.3, 0.8}) {
       const sim::Snapshot now = scene.at(t);
@@ -96,7 +63,7 @@ TEST(Pulley, ABlockAndTackleLiftsByAsManyPieces) {
         "over = [{ body = \"load\", local = [-0.3, 0] }, { body = \"load\", local = [-0.1, 0] }, [-0.1, 4], "
         "[0.1, 4], { body = \"load\", local = [0.1, 0] }, { body = \"load\", local = [0.3, 0] }, [0.3, 4], "
         "[2, 4]]\n");
-    const std::size_t load = body_called(scene, "load"), weight = body_called(scene, "weight");
+    const std::size_t load = number_of(scene, "load"), weight = number_of(scene, "weight");
     const sim::Snapshot now = scene.at(0.7);
     EXPECT_NEAR(now.bodies[load].velocity.y(), A * 0.7, 1e-9) << manner.name;
     EXPECT_NEAR(now.bodies[weight].velocity.y(), -n * A * 0.7, 1e-9) << manner.name;
@@ -114,7 +81,7 @@ TEST(Pulley, ASwingingAtwoodMachineKeepsItsRopeAndItsEnergy) {
                   "[[particle]]\nname = \"weight\"\nmass = 2\nposition = [-2, 0]\nradius = 0.1\n"
                   "[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [\"bob\", \"weight\"]\n"
                   "over = [[0, 2], [-2, 2]]\n");
-    const std::size_t bob = body_called(scene, "bob"), weight = body_called(scene, "weight");
+    const std::size_t bob = number_of(scene, "bob"), weight = number_of(scene, "weight");
     const auto length = [&](const sim::Snapshot& now) {
       return (now.bodies[bob].position - sim::Vec3(0, 2, 0)).norm() + 2 +
              (now.bodies[weight].position - sim::Vec3(-2, 2, 0)).norm();
@@ -155,7 +122,7 @@ TEST(Pulley, PullsAndNeverPushes) {
         "[[particle]]\nname = \"right\"\nmass = 1\nposition = [1, 0]\nradius = 0.1\n"
         "[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [\"left\", \"right\"]\n"
         "over = [[-1, 4], [1, 4]]\n");
-    const std::size_t left = body_called(scene, "left"), right = body_called(scene, "right");
+    const std::size_t left = number_of(scene, "left"), right = number_of(scene, "right");
     // both fall freely, the left 3 t higher
     sim::Snapshot now = scene.at(0.2);
     EXPECT_NEAR(now.bodies[left].position.y(), 3 * 0.2 - 0.5 * kEarth * 0.04, 1e-6) << manner.name;
@@ -180,7 +147,7 @@ TEST(Pulley, OverABodyThatIsMovedFeelsItsAcceleration) {
                   "[[particle]]\nname = \"right\"\nmass = 2\nposition = [0, 1]\nradius = 0.1\n"
                   "[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [\"left\", \"right\"]\nover = "
                   "[\"hook\"]\n");
-    const std::size_t left = body_called(scene, "left"), right = body_called(scene, "right");
+    const std::size_t left = number_of(scene, "left"), right = number_of(scene, "right");
     const double begun = scene.at(0).energies.total();
     const sim::Snapshot now = scene.at(0.4);
     EXPECT_NEAR(now.bodies[left].velocity.y(), (a + lift) * 0.4, 1e-6) << manner.name;
@@ -208,8 +175,8 @@ TEST(Rope, OnAHandThatMovesSwingsAsOnOneAtRest) {
             more + "\nradius = 0.1\nvelocity = [" + std::to_string(8 + speed) + ", 0" + more +
             "\n[[joint]]\ntype = \"rope\"\nbetween = [\"hand\", \"ball\"]\n");
         const sim::Snapshot now = scene.at(1);
-        return sim::Vec3(now.bodies[body_called(scene, "ball")].position -
-                         now.bodies[body_called(scene, "hand")].position);
+        return sim::Vec3(now.bodies[number_of(scene, "ball")].position -
+                         now.bodies[number_of(scene, "hand")].position);
       };
       EXPECT_NEAR((swing(3) - swing(0)).norm(), 0, 1e-8) << manner.name << space;
     }
@@ -227,8 +194,8 @@ TEST(Pulley, InSpaceRunsOverPoints) {
         "[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [\"left\", \"right\"]\n"
         "over = [[-1, 4, 1], [1, 4, -1]]\n");
     const sim::Snapshot now = scene.at(0.7);
-    EXPECT_NEAR(now.bodies[body_called(scene, "left")].velocity.y(), a * 0.7, 1e-9) << manner.name;
-    EXPECT_NEAR(now.bodies[body_called(scene, "right")].velocity.y(), -a * 0.7, 1e-9) << manner.name;
+    EXPECT_NEAR(now.bodies[number_of(scene, "left")].velocity.y(), a * 0.7, 1e-9) << manner.name;
+    EXPECT_NEAR(now.bodies[number_of(scene, "right")].velocity.y(), -a * 0.7, 1e-9) << manner.name;
     EXPECT_NEAR(now.joints[0].force.norm(), kEarth + a, 1e-8) << manner.name;
   }
 }
@@ -239,7 +206,7 @@ TEST(Pulley, BreaksWhereItIsLoadedTooMuch) {
     TextRun scene(plane_without_walls(manner) + kAtwood + "breaks = 12.5\n");  // 12 and 15.3 N
     const sim::Snapshot now = scene.at(0.5);
     EXPECT_TRUE(now.joints[1].broken && now.joints[2].broken) << manner.name;
-    EXPECT_NEAR(now.bodies[body_called(scene, "left")].velocity.y(), -kEarth * 0.5, 0.05) << manner.name;
+    EXPECT_NEAR(now.bodies[number_of(scene, "left")].velocity.y(), -kEarth * 0.5, 0.05) << manner.name;
     TextRun whole(plane_without_walls(manner) + kAtwood + "breaks = 16\n");
     EXPECT_FALSE(whole.at(0.5).joints[2].broken) << manner.name;
   }
@@ -276,7 +243,7 @@ TEST(Gear, TwoWheelsTurnInTheirRatioUnderTheTorqueOfBoth) {
   const double alpha = 3 / (i1 + i2 / (n * n));
   for (const Manner& manner : kManners) {
     TextRun scene(plane_without_walls(manner) + kTwoWheels);
-    const std::size_t small = body_called(scene, "small"), large = body_called(scene, "large");
+    const std::size_t small = number_of(scene, "small"), large = number_of(scene, "large");
     for (const double t : {0.4, 1.1}) {
       const sim::Snapshot now = scene.at(t);
       EXPECT_NEAR(now.bodies[small].spin.z(), alpha * t, 1e-9) << manner.name;
@@ -302,8 +269,8 @@ TEST(Gear, ARackTurnsItsPinion) {
         "[[joint]]\nname = \"guide\"\ntype = \"slider\"\nbetween = [\"rack\", \"room\"]\naxis = [0, 1]\n"
         "[[joint]]\nname = \"teeth\"\ntype = \"gear\"\njoints = [\"guide\", \"axle\"]\nratio = -0.4\n");
     const sim::Snapshot now = scene.at(0.6);
-    EXPECT_NEAR(now.bodies[body_called(scene, "rack")].velocity.y(), -a * 0.6, 1e-9) << manner.name;
-    EXPECT_NEAR(now.bodies[body_called(scene, "pinion")].spin.z(), a * 0.6 / 0.4, 1e-8) << manner.name;
+    EXPECT_NEAR(now.bodies[number_of(scene, "rack")].velocity.y(), -a * 0.6, 1e-9) << manner.name;
+    EXPECT_NEAR(now.bodies[number_of(scene, "pinion")].spin.z(), a * 0.6 / 0.4, 1e-8) << manner.name;
     EXPECT_NEAR((now.joints[2].force - sim::Vec3(0, 2 * (kEarth - a), 0)).norm(), 0, 1e-8) << manner.name;
   }
 }
@@ -321,8 +288,8 @@ TEST(Gear, InSpaceHoldsTwoHinges) {
         "[[joint]]\ntype = \"gear\"\njoints = [\"small_axle\", \"large_axle\"]\nratio = -2\n");
     const double i1 = 0.4 * 0.25, i2 = 0.4 * 4, alpha = 3 / (i1 + i2 / 4);
     const sim::Snapshot now = scene.at(0.9);
-    const double small = now.bodies[body_called(scene, "small")].spin.z(),
-                 large = now.bodies[body_called(scene, "large")].spin.z();
+    const double small = now.bodies[number_of(scene, "small")].spin.z(),
+                 large = now.bodies[number_of(scene, "large")].spin.z();
     EXPECT_NEAR(small, alpha * 0.9, 1e-8) << manner.name;
     EXPECT_NEAR(small, -2 * large, 1e-11 * alpha) << manner.name;
     EXPECT_NEAR(now.joints[2].force.norm(), i2 * alpha / 2 / 1, 1e-8) << manner.name;
@@ -338,7 +305,7 @@ TEST(Gear, ADrivenSliderCrankIsWhereItsAngleSays) {
         "[[box]]\nname = \"piston\"\nsize = [0.4, 0.3]\nmass = 1\nposition = [2, 0]\n"
         "[[joint]]\ntype = \"slider\"\nbetween = [\"piston\", \"room\"]\n"
         "[[joint]]\ntype = \"rod\"\nbetween = [{ body = \"crank\", local = [0.5, 0] }, \"piston\"]\n");
-    const std::size_t piston = body_called(scene, "piston");
+    const std::size_t piston = number_of(scene, "piston");
     for (const double t : {0.2, 0.65, 1.3}) {
       const double w = 2 * std::numbers::pi * t;
       EXPECT_NEAR(scene.place(t, piston).x(),
@@ -565,7 +532,7 @@ TEST(Pulley, PiecesAreNumberedFromTheFirstEnd) {
     const TextRun run(yoyo + (turned ? "[\"end\", [1.8, 4]]\n" : "[[1.8, 4], \"end\"]\n"));
     const sim::Snapshot now = run.at(0.3);
     // a yo-yo falls with 2/3 g, its string bears m g / 3
-    EXPECT_NEAR(now.bodies[body_called(run, "disc")].position.y(), 3.4 - kEarth / 3 * 0.09, 1e-5);
+    EXPECT_NEAR(now.bodies[number_of(run, "disc")].position.y(), 3.4 - kEarth / 3 * 0.09, 1e-5);
     EXPECT_NEAR(now.joints[turned ? 1 : 0].force.norm(), kEarth / 3, 1e-4) << turned;
     EXPECT_LT(now.joints[turned ? 0 : 1].force.norm(), 1e-4) << turned;
   }

@@ -9,10 +9,41 @@
 #include <variant>
 #include <vector>
 
+#include "scene/error.h"
 #include "scene/scene.h"
 #include "sim/step/run.h"
 
 namespace obscura::scene {
+
+/// A mode and a solver, as [physics] has them.
+struct Manner {
+  std::string name, keys;
+};
+inline const std::vector<Manner> kManners = {
+    {"contact", "[physics]\ncollision = \"contact\"\nsolver = \"direct\""},
+    {"event", "[physics]\ncollision = \"event\""},
+    {"iterative", "[physics]\ncollision = \"contact\"\nsolver = \"iterative\""},
+};
+
+/// 20 m without walls, its middle at the origin; `room`: more of its keys.
+inline std::string plane_without_walls(const Manner& manner, const std::string& room = "") {
+  return "duration = 1000\n[room]\nsize = [20, 20]\ncorner = [-10, -10]\nwalls = \"none\"\n" + room + "\n" +
+         manner.keys + "\n";
+}
+inline std::string space_without_walls(const Manner& manner, const std::string& room = "") {
+  return "duration = 1000\n[room]\nsize = [20, 20, 20]\ncorner = [-10, -10, -10]\nwalls = \"none\"\n" + room +
+         "\n" + manner.keys + "\n";
+}
+
+/// What parse() says against a text; empty: nothing.
+inline std::string refusal(const std::string& text) {
+  try {
+    parse(text, "a.toml", {});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
 
 /// The run of a scene that a test has as a text.
 struct TextRun {

@@ -180,7 +180,6 @@ TEST(PlaneIterative, CradleHandsTheBlowOn) {
   EXPECT_NEAR(r.state().v[4][0], 1, 1e-12);
 }
 
-// both corners of a flat landing are one blow
 // e = 0: what is left of the blow is what the iterations leave, 1e-7 widths a second
 TEST(PlaneIterative, AHeavyBallOnALightBoxDoesNotBounceWhateverMovesElsewhere) {
   for (const bool beside : {false, true}) {
@@ -208,6 +207,7 @@ TEST(PlaneIterative, AHeavyBallOnALightBoxDoesNotBounceWhateverMovesElsewhere) {
   }
 }
 
+// both corners of a flat landing are one blow
 TEST(PlaneIterative, FlatLandingDoesNotTurnABox) {
   Room r;
   r.floor();

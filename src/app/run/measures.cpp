@@ -109,6 +109,16 @@ std::function<double(const sim::Snapshot&)> reader(const Question& asked, const 
           };
     }
   }
+  // how much a joint bears
+  for (std::size_t i = 0; i < cast.joints.size(); ++i) {
+    const std::string& whose = cast.joints[i].name;
+    if (!asked.path.starts_with(whose + ".")) continue;
+    more.push_back(whose + ".force"), more.push_back(whose + ".torque");
+    if (asked.path == whose + ".force")
+      return [i](const sim::Snapshot& now) { return now.joints[i].force.norm(); };
+    if (asked.path == whose + ".torque")
+      return [i](const sim::Snapshot& now) { return now.joints[i].torque.norm(); };
+  }
   std::vector<std::string_view> names(more.begin(), more.end());
   for (const Column& column : all) names.push_back(column.name);
   std::string meant = scene::did_you_mean(asked.path, names);

@@ -100,7 +100,7 @@ constexpr std::array kMeasures{
              const sim::Vec3 all = sum(Quantity::torque, body, cast, now);
              return cast.dimension == 2 ? all.z() : all.norm();
            }),
-    vector("joint_torque", "\\tau", "N m", "", Quantity::joint_torque,
+    vector("joint_torque", "\\tau_\\text{joint}", "N m", "", Quantity::joint_torque,
            [](Cast cast, Now now, int body) {
              const sim::Vec3 all = sum(Quantity::joint_torque, body, cast, now);
              return cast.dimension == 2 ? all.z() : all.norm();

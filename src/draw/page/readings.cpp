@@ -95,7 +95,7 @@ std::vector<Reading> held(const sim::SceneInfo& cast, const sim::Snapshot& now, 
       std::size_t part = i;
       for (const sim::Snapshot::Joint::Hold& hold : it.holds) {
         if (hold.body != body) continue;
-        add(hold.place, torque ? hold.torque : hold.force, part);
+        add(torque ? hold.place : hold.at, torque ? hold.torque : hold.force, part);
         part += n;
       }
       continue;

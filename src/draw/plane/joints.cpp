@@ -251,6 +251,25 @@ void draw_racks(const Stage& stage, const View& view, const sim::Snapshot& now, 
   }
 }
 
+// How far a rail without limits goes from `home` along a unit vector of the room, m: to the walls, and no
+// farther than the picture.
+std::pair<double, double> reach_of_rail(const Stage& stage, const View& view, const Vec3& home,
+                                        const Vec3& along) {
+  double from = -kFar / view.scale, to = kFar / view.scale;
+  // inside where off + t rate >= 0
+  const auto within = [&](double off, double rate) {
+    if (!(off >= 0) || rate == 0) return;
+    (rate > 0 ? from : to) = rate > 0 ? std::max(from, -off / rate) : std::min(to, -off / rate);
+  };
+  for (const sim::SceneInfo::Wall& wall : stage.cast.walls)
+    within((home - wall.point).dot(wall.normal), along.dot(wall.normal));
+  const Rect& window = view.window;
+  const Point at = view.page(home), by = view.scale * Point(along.x(), -along.y());
+  within(at.x() - window.x, by.x()), within(window.x + window.width - at.x(), -by.x());
+  within(at.y() - window.y, by.y()), within(window.y + window.height - at.y(), -by.y());
+  return {from, to};
+}
+
 void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   const double weight = stage.layout.weight;
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
@@ -261,8 +280,11 @@ void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, 
     const Point along(c * joint.axis.x() - s * joint.axis.y(), -(s * joint.axis.x() + c * joint.axis.y()));
     const Point across(-along.y(), along.x()), home = view.page(now.joints[i].b);
     const Color color = stage.colours.hatch;
-    const auto end = [&](double limit) { return std::clamp(limit * view.scale, -kFar, kFar); };
-    const Point from = home + end(joint.lower) * along, to = home + end(joint.upper) * along;
+    const auto [least, most] = reach_of_rail(stage, view, now.joints[i].b, Vec3(along.x(), -along.y(), 0));
+    const bool starts = std::abs(joint.lower) * view.scale < kFar,
+               ends = std::abs(joint.upper) * view.scale < kFar;
+    const Point from = home + view.scale * (starts ? joint.lower : least) * along,
+                to = home + view.scale * (ends ? joint.upper : most) * along;
     const double width = kSpringLine * weight;
     list.of({Subject::What::joint, int(i)});
     list.add({{from, width, color}, {to, width, color}}, Cap::butt);

@@ -137,6 +137,8 @@ struct Joint {
   struct Coil {
     double stiffness = 0, damping = 0;  // N m/rad or N/m, N m s/rad or N s/m
     double rest = 0;                    // rad or m
+
+    double force(double c, double rate) const { return -stiffness * (c - rest) - damping * rate; }
   };
 
   std::string name;

@@ -129,8 +129,10 @@ struct Snapshot {
     Vec3 torque = Vec3::Zero();               // on its a about its place, N m
     struct Hold {
       int body = -1;
-      Vec3 place = Vec3::Zero(), force = Vec3::Zero();  // m, N
-      Vec3 torque = Vec3::Zero();                       // about that place, N m
+      Vec3 place = Vec3::Zero();   // where it holds it, m
+      Vec3 at = Vec3::Zero();      // where its force acts, m
+      Vec3 force = Vec3::Zero();   // N
+      Vec3 torque = Vec3::Zero();  // about `place`, N m
     };
     std::vector<Hold> holds{};  // of a mechanism: what it puts on each body, where it holds it
     bool broken = false;

@@ -368,7 +368,7 @@ double ForwardDynamics<D>::push_joint(const JointTie& tie, std::span<double> v_r
   free_row(joint, a, b, AngularVec<D>(rounds_of(tie.a) - rounds_of(tie.b)), row, c);
   const double of_a = row.along.dot(a.v) + row.angular_a.dot(a.w),
                of_b = row.along.dot(b.v) + row.angular_b.dot(b.w);
-  const double f = coil_force(joint, row, c, a, b);
+  const double f = joint.coil->force(c, of_a - of_b);
   if (tie.a.member >= 0) push(tie.a.member, Wrench<D>{row.angular_a, row.along} * f, v_rate);
   if (tie.b.member >= 0) push(tie.b.member, Wrench<D>{row.angular_b, row.along} * -f, v_rate);
   return (tie.b.drive >= 0 ? f * of_b : 0) - (tie.a.drive >= 0 ? f * of_a : 0);

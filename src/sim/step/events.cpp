@@ -351,7 +351,7 @@ void Events<D>::change(State<D>& state, const std::vector<const Action*>& action
       }
     }
   }
-  if (!state.broken.empty()) break_ropes(model_, state.broken);
+  if (!state.broken.empty()) break_dependents(model_, state.broken);
   make(state);
   if (!state.work.empty())
     state.work[0] += energies(stepper_->model(state), state, stepper_->paths(), t).total() - before;

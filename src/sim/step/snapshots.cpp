@@ -178,7 +178,8 @@ void hold(const Model<D>& model, const State<D>& state, Snapshot& now) {
     each_side(row[0], [&](int body, const Vec<D>& along, const AngularVec<D>& angular) {
       push(body, Wrench<D>{angular, along} * f);
       // where it holds it: the end about whose place it turns it least
-      Snapshot::Joint::Hold held{body, to_3d<D>(state.x[body]), to_3d<D>(Vec<D>(f * along)), Vec3::Zero()};
+      Snapshot::Joint::Hold held;
+      held.body = body, held.place = to_3d<D>(state.x[body]), held.force = to_3d<D>(Vec<D>(f * along));
       double least = 1e300;
       const auto end = [&](const End<D>& it) {
         if (it.body != body) return;
@@ -190,12 +191,12 @@ void hold(const Model<D>& model, const State<D>& state, Snapshot& now) {
       };
       end(joint.a), end(joint.b);
       for (const End<D>& it : joint.over) end(it);
-      // that of a gear's teeth, which the axles bear as well
-      if (joint.geared && along.isZero(0)) {
-        const double side = body == (*joint.geared)[0].a.body   ? 1
-                            : body == (*joint.geared)[1].a.body ? -1
-                                                                : 0;
-        held.force = side * to_3d<D>(on_a.f);
+      held.at = held.place;
+      if (joint.geared) {
+        // teeth push wheels and racks, where they meet; what turns on a body is only reckoned from it
+        if (body != (*joint.geared)[0].a.body && body != (*joint.geared)[1].a.body) return;
+        if (const double square = held.force.squaredNorm(); square > 0)
+          held.at += held.force.cross(held.torque) / square;
       }
       for (Snapshot::Joint::Hold& known : now.joints[i].holds) {
         if (known.body != body || known.place != held.place) continue;

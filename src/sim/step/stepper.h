@@ -98,7 +98,7 @@ class Stepper {
   Blasts<D> blasts_;
   std::unique_ptr<ContactStep<D>> contact_;  // of `contact` and `event`
   std::unique_ptr<BondedBodies<D>> bonded_;  // of a model with bonds: all is done there
-  std::unique_ptr<Releases<D>> releases_;     // of one that lets bodies go: likewise
+  std::unique_ptr<Releases<D>> releases_;    // of one that lets bodies go: likewise
   std::unique_ptr<Events<D>> events_;        // of one with conditions: likewise
   Drives<D> drives_;
   DivergenceMonitor<D> divergence_;

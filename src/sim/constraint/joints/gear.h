@@ -2,12 +2,17 @@
 
 // Gear: the free coordinate of one joint is a ratio times that of another; angles of pins, in space of
 // hinges, and ways of sliders: a slider and a pin are a rack and its pinion.
-//   C    = (c_1 - c_1(0)) - n (c_2 - c_2(0))        where coordinates are angles of space, up to the rounds
-//                                                   that both may differ by
-//   J    = J_1 - n J_2,  J' v likewise              those of the joints' free coordinates
-//   free: both coordinates, as one. Its force is that of the teeth, f / r_1 across the line of the centres
-//   for two pins of pitch radii r_1 and r_2 = |n| r_1, of the rack for a slider, shown as that on the first.
-//   Breaks by it.
+//   C    = (c_1 - c_1(0)) - n (c_2 - c_2(0)) + F . p_1 - F . p_2
+//                                                   where coordinates are angles of space, up to the rounds
+//                                                   that both may differ by; p  what the pins are off
+//   J    = J_1 - n J_2 + F . P_1 - F . P_2          those of the joints' free coordinates, P of their pins
+//   J' v likewise, F kept
+//   free: both coordinates, as one. F is the force of the teeth on the first for a unit of torque, 1 / r_1
+//   across the line of the centres for two pins of pitch radii r_1 and r_2 = |n| r_1, along the rack for a
+//   slider. The pins hold, so their terms change no motion: by them the teeth push wheels and not only turn
+//   them, and axles bear that. F is zero of wheels about one place, about axes that are not parallel, or
+//   on different bodies; then the gear is a couple. Breaks by its force or its torque, and where one of its
+//   joints breaks.
 // Source: Featherstone, Rigid Body Dynamics Algorithms (2008), §3 (a constraint of two joint variables).
 
 #include <algorithm>
@@ -18,6 +23,8 @@
 #include "sim/math/trig.h"
 
 namespace obscura::sim {
+
+inline constexpr double kSkew = 1e-6;  // rad: how far axes may be from parallel
 
 /// The row and value of the free coordinate of one of the joints of a gear; in the plane angles are left to
 /// the gear's `turn`.
@@ -35,10 +42,17 @@ double geared_coordinate(const JointPose<D>& gear, int which, Row<D>& J) {
   }
 }
 
+/// Whether one body, or the room, bears both of its joints: then teeth may mesh.
+template <int D>
+bool one_frame(const Joint<D>& gear) {
+  return (*gear.geared)[0].b.body == (*gear.geared)[1].b.body;
+}
+
 /// How the teeth of two pins' wheels push on the first for a unit of torque, 1/m; zero where both turn about
-/// one place.
+/// one place, about axes that are not parallel, or on different bodies.
 template <int D>
 Vec<D> tooth_force(const JointPose<D>& gear) {
+  if (!one_frame(gear.joint)) return Vec<D>::Zero();
   const Joint<D>&p = (*gear.joint.geared)[0], &q = (*gear.joint.geared)[1];
   const BodyMotion<D>&a = gear.side(p.a.body), &b = gear.side(q.a.body);
   Vec<D> apart = (b.x + b.arm(q.a.local)) - (a.x + a.arm(p.a.local));
@@ -51,28 +65,42 @@ Vec<D> tooth_force(const JointPose<D>& gear) {
   if constexpr (D == 2) {
     return Vec<D>(-e[1], e[0]) / radius;
   } else {
-    const Vec<D> axis = gear.side(p.b.body).arm(p.axis);
+    const Vec<D> axis = gear.side(p.b.body).arm(p.axis), other = gear.side(q.b.body).arm(q.axis);
+    if (std::fabs(axis.dot(e)) > kSkew || axis.cross(other).squaredNorm() > kSkew * kSkew)
+      return Vec<D>::Zero();
     return axis.cross(e) / radius;
   }
 }
 
 template <int D>
 void hold_ratio(const JointPose<D>& at, Row<D>* J, double* C) {
+  const auto& joints = *at.joint.geared;
   const double factors[] = {1, -at.joint.ratio};
-  Row<D> row;
+  const bool slides[] = {joints[0].kind == JointKind::slider, joints[1].kind == JointKind::slider};
+  Row<D> row, own[2];
   double error = 0;
   for (int k = 0; k < 2; ++k) {
-    const Joint<D>& joint = (*at.joint.geared)[std::size_t(k)];
-    Row<D> one;
-    const double f = factors[k], value = geared_coordinate(at, k, one);
-    error += f * value, row.velocity_product += f * one.velocity_product;
-    if (joint.a.body >= 0)
-      row.more.push_back({joint.a.body, Vec<D>(f * one.along), AngularVec<D>(f * one.angular_a)});
-    if (joint.b.body >= 0)
-      row.more.push_back({joint.b.body, Vec<D>(-f * one.along), AngularVec<D>(-f * one.angular_b)});
-    if (joint.kind == JointKind::slider) row.along += k == 0 ? one.along : Vec<D>(-f * one.along);
+    error += factors[k] * geared_coordinate(at, k, own[k]);
+    row.velocity_product += factors[k] * own[k].velocity_product;
   }
-  if (row.along.isZero(0)) row.along = tooth_force(at);
+  row.along = slides[0] ? own[0].along : slides[1] ? Vec<D>(-factors[1] * own[1].along) : tooth_force(at);
+  for (int k = 0; k < 2; ++k) {
+    const Joint<D>& joint = joints[std::size_t(k)];
+    // what the teeth push at a pin
+    const bool pushes = !slides[k] && one_frame(at.joint);
+    const Vec<D> push = !pushes ? Vec<D>(Vec<D>::Zero()) : k == 0 ? row.along : Vec<D>(-row.along);
+    const BodyMotion<D>&a = at.side(joint.a.body), &b = at.side(joint.b.body);
+    const Vec<D> arm_a = a.arm(joint.a.local), arm_b = b.arm(joint.b.local);
+    error += push.dot((a.x + arm_a) - (b.x + arm_b));
+    row.velocity_product += push.dot(cross_velocity<D>(a.w, cross_velocity<D>(a.w, arm_a)) -
+                                     cross_velocity<D>(b.w, cross_velocity<D>(b.w, arm_b)));
+    const auto add = [&](int body, double sign, const AngularVec<D>& angular, const Vec<D>& arm) {
+      if (body < 0) return;
+      row.more.push_back({body, Vec<D>(sign * (factors[k] * own[k].along + push)),
+                          AngularVec<D>(sign * (factors[k] * angular + moment<D>(arm, push)))});
+    };
+    add(joint.a.body, 1, own[k].angular_a, arm_a), add(joint.b.body, -1, own[k].angular_b, arm_b);
+  }
   if constexpr (D == 2) {
     C[0] = error + (at.turn - at.joint.turn)[0];
   } else {

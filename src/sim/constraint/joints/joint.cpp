@@ -69,7 +69,9 @@ Wrench<D> coil_load(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMot
   Row<D> row;
   double c = 0;
   free_row(joint, a, b, turn, row, c);
-  return load_on_a(joint, row, a, b) * coil_force(joint, row, c, a, b);
+  const double rate =
+      (row.along.dot(a.v) + row.angular_a.dot(a.w)) - (row.along.dot(b.v) + row.angular_b.dot(b.w));
+  return load_on_a(joint, row, a, b) * joint.coil->force(c, rate);
 }
 
 template const JointEquations<2>& equations<2>(JointKind);

@@ -80,14 +80,20 @@ template <int D>
 int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b, const AngularVec<D>& turn,
          Row<D>* out, double* off, std::type_identity_t<std::span<const BodyMotion<D>>> all = {});
 
-/// Where a pulley is broken, breaks all pulleys of the same rope.
+/// What breaks with what is broken: all pulleys of one rope, and a gear with either of its joints.
 template <int D>
-void break_ropes(const Model<D>& model, std::vector<char>& broken) {
+void break_dependents(const Model<D>& model, std::vector<char>& broken) {
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const int rope = model.joints[i].rope;
     if (rope < 0 || !broken[i]) continue;
     for (std::size_t j = 0; j < model.joints.size(); ++j)
       if (model.joints[j].rope == rope) broken[j] = 1;
+  }
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    if (!model.joints[i].geared || broken[i]) continue;
+    for (const Joint<D>& held : *model.joints[i].geared)
+      for (std::size_t j = 0; j < model.joints.size(); ++j)
+        if (broken[j] && model.joints[j].name == held.name) broken[i] = 1;
   }
 }
 
@@ -114,16 +120,7 @@ bool free_row(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>
 template <int D>
 Wrench<D> load_on_a(const Joint<D>& joint, const Row<D>& row, const BodyMotion<D>& a, const BodyMotion<D>& b);
 
-/// The force of a joint's spring along its free coordinate c, N or N m; `row` and c as of free_row().
-template <int D>
-double coil_force(const Joint<D>& joint, const Row<D>& row, double c, const BodyMotion<D>& a,
-                  const BodyMotion<D>& b) {
-  const double speed =
-      (row.along.dot(a.v) + row.angular_a.dot(a.w)) - (row.along.dot(b.v) + row.angular_b.dot(b.w));
-  return -joint.coil->stiffness * (c - joint.coil->rest) - joint.coil->damping * speed;
-}
-
-/// What that spring puts on a, as load_on_a(); nothing where there is none.
+/// What the spring of a joint puts on its a, as load_on_a(); nothing where there is none.
 template <int D>
 Wrench<D> coil_load(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
                     const AngularVec<D>& turn);

@@ -50,8 +50,9 @@ void ExactSolver<D>::write_contacts(State<D>& state) {
 template <int D>
 void ExactSolver<D>::record_forces(const State<D>& state) {
   outcome_.contacts.clear(), progress_.known = &outcome_.contacts;
+  // one that has broken in this step is shown with what broke it
   for (const int i : active_.joints) {
-    if (moves(model_.joints[i])) outcome_.joint_loads[i] = {};
+    if (moves(model_.joints[i]) && state.broken[i] == step_.broken[i]) outcome_.joint_loads[i] = {};
   }
   record_chain_forces();
   for (const Constraint& constraint : constraints_) {
@@ -140,7 +141,7 @@ bool ExactSolver<D>::break_loaded(State<D>& state, double done) {
     });
   }
   if (scratch_.unheld.empty()) return false;
-  break_ropes(model_, state.broken);
+  break_dependents(model_, state.broken);
   for (const int i : active_.joints) {
     const bool known = !course_ || step_.broken[i] || !state.broken[i] ||
                        std::any_of(course_->breaks.begin(), course_->breaks.end(),
@@ -165,7 +166,7 @@ void ExactSolver<D>::break_joints(State<D>& state) {
       if (body >= 0) scratch_.unheld.push_back(body);
     });
   }
-  break_ropes(model_, state.broken);
+  break_dependents(model_, state.broken);
   if (!scratch_.unheld.empty()) sleep_.wake(state, scratch_.unheld);
 }
 

@@ -479,7 +479,7 @@ bool JointSolver<D>::break_joints(State<D>& state) const {
       continue;
     state.broken[i] = 1, any = true;
   }
-  if (any) break_ropes(model_, state.broken);
+  if (any) break_dependents(model_, state.broken);
   return any;
 }
 
