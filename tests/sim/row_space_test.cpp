@@ -65,9 +65,12 @@ TEST(SpaceRows, OfAJointChangeByTheirDrift) {
       Joint<3> joint = joint_of(kind, dice);
       if (kind == JointKind::pulley) joint.over = {{-1, Vec<3>(6, 7, 5)}, {1, dice.vec(1)}};
       if (kind == JointKind::gear) {
-        joint.geared = std::make_shared<const std::array<Joint<3>, 2>>(
-            std::array<Joint<3>, 2>{joint_of(JointKind::hinge, dice), joint_of(JointKind::slider, dice)});
-        joint.ratio = 1.7, joint.length = -1, joint.lower = 0;
+        // a rack and its pinion; every other time two wheels
+        const JointKind second = n % 2 ? JointKind::hinge : JointKind::slider;
+        std::array<Joint<3>, 2> both{joint_of(JointKind::hinge, dice), joint_of(second, dice)};
+        both[1].axis = both[0].axis;
+        joint.geared = std::make_shared<const std::array<Joint<3>, 2>>(both);
+        joint.ratio = n % 4 < 2 ? 1.7 : -1.7, joint.length = -1, joint.lower = 0;
       }
       if (kind == JointKind::screw) joint.ratio = 0.3;
       const BodyMotion<3> a = dice.place(2), b = dice.place(2);

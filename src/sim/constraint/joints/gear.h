@@ -6,7 +6,7 @@
 //                                                   where coordinates are angles of space, up to the rounds
 //                                                   that both may differ by; p  what the pins are off
 //   J    = J_1 - n J_2 + F . P_1 - F . P_2          those of the joints' free coordinates, P of their pins
-//   J' v likewise, F kept
+//   J' v likewise, with F' . (the velocities of the pins)
 //   free: both coordinates, as one. F is the force of the teeth on the first for a unit of torque, 1 / r_1
 //   across the line of the centres for two pins of pitch radii r_1 and r_2 = |n| r_1, along the rack for a
 //   slider. The pins hold, so their terms change no motion: by them the teeth push wheels and not only turn
@@ -48,28 +48,45 @@ bool one_frame(const Joint<D>& gear) {
   return (*gear.geared)[0].b.body == (*gear.geared)[1].b.body;
 }
 
-/// How the teeth of two pins' wheels push on the first for a unit of torque, 1/m; zero where both turn about
-/// one place, about axes that are not parallel, or on different bodies.
+/// How the teeth push on the first for a unit of torque, 1/m, or of force along a rack; and its rate, 1/(m
+/// s).
 template <int D>
-Vec<D> tooth_force(const JointPose<D>& gear) {
-  if (!one_frame(gear.joint)) return Vec<D>::Zero();
+struct ToothForce {
+  Vec<D> value = Vec<D>::Zero(), rate = Vec<D>::Zero();
+};
+
+/// That of two pins' wheels; zero where both turn about one place, about axes that are not parallel, or on
+/// different bodies.
+template <int D>
+ToothForce<D> tooth_force(const JointPose<D>& gear) {
+  if (!one_frame(gear.joint)) return {};
   const Joint<D>&p = (*gear.joint.geared)[0], &q = (*gear.joint.geared)[1];
-  const BodyMotion<D>&a = gear.side(p.a.body), &b = gear.side(q.a.body);
-  Vec<D> apart = (b.x + b.arm(q.a.local)) - (a.x + a.arm(p.a.local));
-  const double n = gear.joint.ratio, far = std::sqrt(apart.squaredNorm());
-  // the first inside the second's ring, or around the second, where both turn the same way
-  if (n > 1) apart = -apart;
-  const double radius = n < 0 ? far / (1 - n) : far / std::fabs(n - 1);
-  if (!(far > 0) || !(radius > 0) || n == 1) return Vec<D>::Zero();
-  const Vec<D> e = apart / far;
-  if constexpr (D == 2) {
-    return Vec<D>(-e[1], e[0]) / radius;
-  } else {
-    const Vec<D> axis = gear.side(p.b.body).arm(p.axis), other = gear.side(q.b.body).arm(q.axis);
-    if (std::fabs(axis.dot(e)) > kSkew || axis.cross(other).squaredNorm() > kSkew * kSkew)
-      return Vec<D>::Zero();
-    return axis.cross(e) / radius;
+  const BodyMotion<D>&a = gear.side(p.a.body), &b = gear.side(q.a.body), &frame = gear.side(p.b.body);
+  const Vec<D> arm_a = a.arm(p.a.local), arm_b = b.arm(q.a.local);
+  // of the first inside the second's ring, or around the second, where both turn the same way, backwards
+  const double n = gear.joint.ratio, sign = n > 1 ? -1 : 1;
+  Vec<D> apart = sign * ((b.x + arm_b) - (a.x + arm_a)),
+         moves = sign * (b.velocity(arm_b) - a.velocity(arm_a));
+  Vec<D> axis = Vec<D>::Zero(), tilts = axis;  // of space, and its rate
+  if constexpr (D == 3) {
+    axis = frame.arm(p.axis), tilts = frame.w.cross(axis);
+    if (axis.cross(frame.arm(q.axis)).squaredNorm() > kSkew * kSkew) return {};
+    // across the axis: one wheel may lie before the other
+    const double before = axis.dot(apart);
+    moves -= tilts * before + axis * (tilts.dot(apart) + axis.dot(moves)), apart -= axis * before;
   }
+  const double far = std::sqrt(apart.squaredNorm()), radius = far / std::fabs(1 - n);
+  if (!(far > 0) || n == 1) return {};
+  const Vec<D> e = apart / far, turns = (moves - e * e.dot(moves)) / far;
+  ToothForce<D> force;
+  if constexpr (D == 2) {
+    force.value = Vec<D>(-e[1], e[0]), force.rate = Vec<D>(-turns[1], turns[0]);
+  } else {
+    force.value = axis.cross(e), force.rate = tilts.cross(e) + axis.cross(turns);
+  }
+  force.rate = (force.rate - force.value * (e.dot(moves) / far)) / radius;
+  force.value /= radius;
+  return force;
 }
 
 template <int D>
@@ -83,17 +100,24 @@ void hold_ratio(const JointPose<D>& at, Row<D>* J, double* C) {
     error += factors[k] * geared_coordinate(at, k, own[k]);
     row.velocity_product += factors[k] * own[k].velocity_product;
   }
-  row.along = slides[0] ? own[0].along : slides[1] ? Vec<D>(-factors[1] * own[1].along) : tooth_force(at);
+  ToothForce<D> teeth = slides[0] || slides[1] ? ToothForce<D>{} : tooth_force(at);
+  if (slides[0] || slides[1]) {
+    const int k = slides[0] ? 0 : 1;
+    teeth.value = (k == 0 ? 1 : -factors[1]) * own[k].along;
+    teeth.rate = cross_velocity<D>(at.side(joints[std::size_t(k)].b.body).w, teeth.value);
+  }
+  row.along = teeth.value;
   for (int k = 0; k < 2; ++k) {
     const Joint<D>& joint = joints[std::size_t(k)];
     // what the teeth push at a pin
-    const bool pushes = !slides[k] && one_frame(at.joint);
-    const Vec<D> push = !pushes ? Vec<D>(Vec<D>::Zero()) : k == 0 ? row.along : Vec<D>(-row.along);
+    const double side = slides[k] || !one_frame(at.joint) ? 0 : k == 0 ? 1 : -1;
+    const Vec<D> push = side * teeth.value;
     const BodyMotion<D>&a = at.side(joint.a.body), &b = at.side(joint.b.body);
     const Vec<D> arm_a = a.arm(joint.a.local), arm_b = b.arm(joint.b.local);
     error += push.dot((a.x + arm_a) - (b.x + arm_b));
     row.velocity_product += push.dot(cross_velocity<D>(a.w, cross_velocity<D>(a.w, arm_a)) -
-                                     cross_velocity<D>(b.w, cross_velocity<D>(b.w, arm_b)));
+                                     cross_velocity<D>(b.w, cross_velocity<D>(b.w, arm_b))) +
+                            side * teeth.rate.dot(a.velocity(arm_a) - b.velocity(arm_b));
     const auto add = [&](int body, double sign, const AngularVec<D>& angular, const Vec<D>& arm) {
       if (body < 0) return;
       row.more.push_back({body, Vec<D>(sign * (factors[k] * own[k].along + push)),
