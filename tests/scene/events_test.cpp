@@ -288,6 +288,38 @@ TEST(Events, ALadderLeavesItsWallOnce) {
   }
 }
 
+// A ball that rolls down a dome from rest leaves it where nothing presses: at cos = 2/(3 + k) of the cosine
+// of its start, I = k m r^2. With friction mu it slips when the normal force has come down to some 1/mu of
+// the weight, and then leaves in as small a part of the time; what its slip takes is of that order, too.
+TEST(Events, ARollingBallLeavesADomeHoweverGreatTheFriction) {
+  for (const bool space : {false, true}) {
+    for (const std::string mode : {"event", "contact"}) {
+      for (const double mu : {1e2, 1e3, 1e4, 5e4, 1e5, 1e6}) {
+        const std::string text =
+            fmt::format(
+                "[room]\nsize = {0}\ncorner = {1}\nwalls = \"none\"\n"
+                "[physics]\ncollision = \"{3}\"\n[[ball]]\nname = \"dome\"\nradius = 1\nposition = {4}\n"
+                "fixed = true\nfriction = {2}\n[[ball]]\nname = \"ball\"\nradius = 0.2\nposition = "
+                "{5}\nfriction = {2}\nelasticity = 0\n",
+                space ? "[8, 8, 8]" : "[8, 8]", space ? "[-4, -4, -4]" : "[-4, -4]", mu, mode,
+                spot(space, 0, 0), spot(space, 0.1, std::sqrt(1.43))) +
+            when("leaves = [\"dome\", \"ball\"]", "{ mark = \"off\" }");
+        const auto run = run_of(text);
+        const auto begun = snapshot_at(*run, 0).energies.total();
+        const double k = space ? 0.4 : 0.5, leaves = 2 / (3 + k) * std::sqrt(1.43);
+        const auto times = times_until(text, 1.4);
+        ASSERT_EQ(times.size(), 1u) << space << mode << mu;
+        const sim::Snapshot off = snapshot_at(*run, times[0]);
+        EXPECT_NEAR(off.energies.total(), begun, 1e-7 * begun + begun / (mu * mu)) << space << mode << mu;
+        if (mode == "event")
+          EXPECT_NEAR(off.bodies[1].position.y(), leaves, 1e-7 + 0.02 / mu) << space << mu;
+        else
+          EXPECT_NEAR(off.bodies[1].position.y(), leaves, 4e-3) << space << mu;
+      }
+    }
+  }
+}
+
 // A gate lets a ball go when another comes by; it then falls as one that was let go at that time.
 TEST(Events, AReleaseIsAtTheExactTime) {
   const std::string text = open_room("event", false, "position = [0, 3]") +

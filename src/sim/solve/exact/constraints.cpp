@@ -312,25 +312,31 @@ bool ExactSolver<D>::solve_modes(State<D>& state, double t) {
   return found;
 }
 
+// what all bodies at hand weigh and their rows are pulled by, N
+template <int D>
+double ExactSolver<D>::loads() const {
+  const double g = std::sqrt(model_.gravity.squaredNorm());
+  double sum = 0;
+  for (const int body : active_.subset.bodies)
+    sum += response_.moves(body) ? g / response_.inverse_mass(body) : 0;
+  for (int i = 0; i < int(rows_.size()); ++i) {
+    if (const double k = self_coupling(i); k > 0) sum += std::fabs(b_[i]) / k;
+  }
+  return sum;
+}
+
 // Whether a sliding contact jams (Painleve): its normal force is kJam times all loads together. Near the
 // angle at which it locks, forces grow without bound and would throw bodies away. The rest is left to an
 // impact.
 template <int D>
 bool ExactSolver<D>::jammed() const {
-  double most = 0, load = 0;
+  double most = 0;
   for (const Constraint& constraint : constraints_) {
     if (constraint.kind != Constraint::Kind::contact || modes_[constraint.block].kind != ModeKind::slide)
       continue;
     most = std::max(most, f_[constraint.first]);
   }
-  if (most == 0) return false;
-  const double g = std::sqrt(model_.gravity.squaredNorm());
-  for (const int body : active_.subset.bodies)
-    load += response_.moves(body) ? g / response_.inverse_mass(body) : 0;
-  for (int i = 0; i < int(rows_.size()); ++i) {
-    if (const double k = self_coupling(i); k > 0) load += std::fabs(b_[i]) / k;
-  }
-  return most > kJam * load;
+  return most > 0 && most > kJam * loads();
 }
 
 template <int D>

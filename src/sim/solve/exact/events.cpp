@@ -25,6 +25,10 @@ constexpr int kMostRoots = 100;
 constexpr double kStraight = 0.8;  // of an interval cut at a release: earlier releases in it are ignored
 constexpr double kBeyond = 1e-12;  // of what a joint bears
 constexpr double kSlight = 1e-6;   // of the largest force: a contact may pull so much before it is released
+constexpr double kWild = 8;        // times all loads: a contact that pulls so much let go long before
+constexpr double kShorter = 1.0 / 8;  // of an interval that is too long by far
+constexpr int kMostShorter = 9;       // times one after another, where numbers are not finite
+constexpr double kFar = 4;            // a ratio of two lengths, of which the geometric mean is tried
 
 }  // namespace
 
@@ -415,6 +419,82 @@ double ExactSolver<D>::tightening_time(const State<D>& state, double h, Couple& 
   return first;
 }
 
+// Whether a contact pulls by far more than anything bears: it let go long before. Where friction is great and
+// bodies slide along a curve, normal forces fall, or grow, exponentially:
+//   f_n' = -a + (2 mu v / R) f_n                       R  radius of the curve, a  by how the load turns
+// and stages far beyond their end answer numbers of any size.
+template <int D>
+bool ExactSolver<D>::pulls_wildly() const {
+  double most = interval_.loads;
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind == Constraint::Kind::contact)
+      most = std::max(most, interval_.forces[constraint.first]);
+  }
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind == Constraint::Kind::contact && active(constraint) &&
+        f_[constraint.first] < -kWild * most)
+      return true;
+  }
+  return false;
+}
+
+// the contact of that key where no other bears what it bears, so that its force is determined; nullptr: none
+template <int D>
+const typename ExactSolver<D>::Constraint* ExactSolver<D>::bears_alone(const ContactKey& key) const {
+  for (int part = 0; part < islands_; ++part) {
+    const Constraint* found = nullptr;
+    int others = 0;
+    for (const int i : island_members_[std::size_t(part)]) {
+      const Constraint& one = constraints_[std::size_t(i)];
+      if (one.kind != Constraint::Kind::contact || !active(one)) continue;
+      if (candidates_[one.of].key == key)
+        found = &one;
+      else
+        ++others;
+    }
+    if (found) return others == 0 ? found : nullptr;
+  }
+  return nullptr;
+}
+
+// The length of the interval after which the reserve of a contact is used up: it is not yet after `low`, and
+// was before `high`. Where the lengths are far apart their geometric mean is tried, then regula falsi,
+// Illinois. Leaves the state at the end of some length.
+template <int D>
+double ExactSolver<D>::release_length(State<D>& state, double t, const Constraint& which, double low,
+                                      double high) {
+  const double slight = 0.5 * interval_.slight;
+  const auto reserve_after = [&](double length) {
+    begin_again(state, t);
+    integrate(state, t, length);
+    const double reserve = all_finite(state) ? force_reserve(which, f_) : -1e300;
+    return std::isfinite(reserve) ? reserve + slight : -1e300;
+  };
+  double at_low = force_reserve(which, f_) + slight, at_high = reserve_after(high);
+  for (int i = 0; i < kMostRoots && high - low > 1e-15 * high; ++i) {
+    double length =
+        high > kFar * low ? std::sqrt(low * high) : (low * at_high - high * at_low) / (at_high - at_low);
+    if (!(length > low && length < high)) length = 0.5 * (low + high);
+    const double value = reserve_after(length);
+    if (std::abs(value) <= slight) return length;
+    if (value > 0) {
+      if (i > 0) at_high *= 0.5;
+      low = length, at_low = value;
+    } else {
+      if (i > 0) at_low *= 0.5;
+      high = length, at_high = value;
+    }
+  }
+  return high;
+}
+
+// back to where the interval began
+template <int D>
+void ExactSolver<D>::begin_again(State<D>& state, double t) {
+  restore(interval_.begun, state);
+  update_poses(state), pose_driven(t);
+}
+
 // smooth motion up to the first event, at most h; answers how long it was. `cut`: an event ended it
 template <int D>
 double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, bool& cut) {
@@ -424,17 +504,24 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
   for (int i = 0; i < int(rows_.size()); ++i) interval_.velocities[i] = row_velocity(i);
   interval_.aims.clear();
   for (const Constraint& constraint : constraints_) interval_.aims.push_back(aim(constraint).speed);
-  double length = h;
+  double length = h, longer = h;
   cut = false, progress_.cut_by = {-1, -1};
   interval_.forces = f_;
   for (int tries = 0; tries < 20; ++tries) {
     integrate(state, t, length);
-    // a force may grow without bound within an interval
-    if (!all_finite(state)) {
-      restore(interval_.begun, state);
-      update_poses(state), pose_driven(t);
-      cut = true;
-      return 0;
+    if (const bool finite = all_finite(state); !finite || pulls_wildly()) {
+      begin_again(state, t);
+      cut = true, longer = length, length *= kShorter;
+      progress_.released.reset();
+      // a force may grow without bound within any interval
+      if (!finite && tries >= kMostShorter) return 0;
+      continue;
+    }
+    if (const Constraint* one = progress_.released ? bears_alone(*progress_.released) : nullptr;
+        one && force_reserve(*one, f_) > interval_.slight) {
+      length = release_length(state, t, *one, length, longer);
+      begin_again(state, t);
+      integrate(state, t, length);
     }
     const Constraint* which = nullptr;
     double opens = progress_.openings > 0 ? release_time(which) : kNever;
@@ -456,10 +543,9 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
       meets = {progress_.released->a, progress_.released->b};
     }
     progress_.cut_by = meets;
-    restore(interval_.begun, state);
-    update_poses(state), pose_driven(t);
+    begin_again(state, t);
     if (part * length < 1e-14 * h) return 0;
-    length *= part;
+    longer = length, length *= part;
   }
   integrate(state, t, length);
   return length;

@@ -279,7 +279,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
       if (event_mode && break_loaded(state, done)) continue;
       if (coming_apart()) project_state(state);
       // at the friction limit nothing slips: as an equality it is sticking
-      interval_.modes = modes_;
+      interval_.modes = modes_, interval_.loads = loads();
       for (ConeMode<D>& mode : interval_.modes) {
         if (mode.kind == ModeKind::at_friction_limit) mode.kind = ModeKind::stick;
       }

@@ -166,6 +166,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     Eigen::VectorXd forces;               // f there
     std::vector<ConeMode<D>> modes;       // as its stages keep them
     double slight = 0;                    // N: smaller normal forces count as none
+    double loads = 0;                     // N: loads() there
   };
 
   // outcome, of the group at hand, then of the step
@@ -261,6 +262,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void build_jacobian(Constraint& constraint, const AngularVec<D>& turn);
   void build_blocks(bool impulses);
   bool solve_modes(State<D>& state, double t);
+  double loads() const;
   bool jammed() const;
   void warm_start_rows(double h);
   bool active(const Constraint& constraint) const;
@@ -314,6 +316,10 @@ class ExactSolver final : public ContactSolver<D>, private System {
   double stopping_time(Couple& first);
   double force_reserve(const Constraint& constraint, const Eigen::VectorXd& f) const;
   double release_time(const Constraint*& which);
+  bool pulls_wildly() const;
+  const Constraint* bears_alone(const ContactKey& key) const;
+  double release_length(State<D>& state, double t, const Constraint& which, double low, double high);
+  void begin_again(State<D>& state, double t);
   double breaking_time(const State<D>& state, Couple& which) const;
   double travel(const State<D>& state, int body, double h) const;
   bool may_close(const State<D>& state, double h, Couple couple) const;
