@@ -41,6 +41,29 @@ TEST_F(States, AThrownBallIsWhereTheParabolaSays) {
   }
 }
 
+// The ball is 51 + 4 t - 4.905 t^2 high: it comes back to 51 m after 4/4.905 s, and passes 50 m later.
+TEST_F(States, AreOfMarks) {
+  scene(std::string(kParabola) +
+        "[physics]\ncollision = \"event\"\n"
+        "[[when]]\nvalue = \"ball.y < 50.99999\"\ndo = [{ mark = \"back\" }]\n"
+        "[[when]]\nvalue = \"ball.y < 50\"\ndo = [{ mark = \"lower\" }]\n");
+  const Outcome run = obscura("states scene.toml --at 0.5,back,lower");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
+  ASSERT_EQ(json["states"].size(), 3u);
+  // to the microsecond after
+  EXPECT_NEAR(json["states"][1]["bodies"][0]["position"][1], 50.99999, 5e-6);
+  EXPECT_NEAR(json["states"][2]["bodies"][0]["position"][1], 50, 7e-6);
+  EXPECT_EQ(obscura("render scene.toml --at back --size 160x90 -o a.png").exit, 0);
+  EXPECT_EQ(obscura("render scene.toml --from back --to lower --size 160x90 -o a.mp4").exit, 0);
+  const Outcome other = obscura("states scene.toml --at bac");
+  EXPECT_EQ(other.exit, 2);
+  EXPECT_NE(other.err.find("did you mean 'back'?"), std::string::npos) << other.err;
+  const Outcome never = obscura("render scene.toml --at 'back[2]' -o b.png");
+  EXPECT_EQ(never.exit, 2);
+  EXPECT_NE(never.err.find("does not come to 'back[2]'"), std::string::npos) << never.err;
+}
+
 TEST_F(States, NumbersReadBackToTheBit) {
   scene(kParabola);
   const Outcome once = obscura("states scene.toml --at 0.7");

@@ -259,6 +259,10 @@ int render(RenderFlags flags) {
   else if (!scene.marks.empty())
     say(stderr, "{}: events are of its own run, and {} is another: what waits for marks is not shown\n",
         scene.file, *flags.states);
+  for (const auto& [flag, at] : {std::pair("--at", &flags.at), std::pair("--from", &flags.from),
+                                 std::pair("--to", &flags.to), std::pair("--poster", &flags.poster)}) {
+    if (*at && !flags.states) *at = with_instants(scene, flag, **at);
+  }
   override_film(flags, scene);
   if (flags.out && !flags.fps) suit_gif(*flags.out, scene.film), suit_pages(*flags.out, scene.film);
   if (flags.interpolate && !flags.states) throw UsageError("--interpolate is for --states");
@@ -329,10 +333,14 @@ OBSCURA_COMMAND(10, render) {
   add_sets(command, flags->sets);
   command.option("--camera", flags->camera, "Only this camera; -o '{camera}.mp4' writes a file for each")
       .type("NAME");
-  command.option("--at", flags->at, "One picture, at this instant (s), which may be after the duration")
+  command
+      .option("--at", flags->at,
+              "One picture, at this instant (s), which may be after the duration, or at a mark of the run")
       .type("SECONDS");
-  command.option("--from", flags->from, "The first instant (s of the run) that is filmed").type("SECONDS");
-  command.option("--to", flags->to, "The end of the film (s); this instant is not filmed").type("SECONDS");
+  command.option("--from", flags->from, "The first instant (s of the run, or a mark) that is filmed")
+      .type("SECONDS");
+  command.option("--to", flags->to, "The end of the film (s, or a mark); this instant is not filmed")
+      .type("SECONDS");
   command.option("--frames", flags->frames, "Only these frames, counted from 0, as in 1,3,5..9").type("LIST");
   command.option("--size", flags->size, "Pixels, as in 1280x720; even for movies").type("WxH");
   command.option("--fps", flags->fps, "Frames per second, as in 60 or 30000/1001").type("RATE");
@@ -358,8 +366,9 @@ OBSCURA_COMMAND(10, render) {
               "With -o -: y4m or rgba, raw frames [y4m]")
       .type("FORM");
   command
-      .option("--poster", flags->poster,
-              "Also a still of this instant (s), for where the movie does not play: movie.poster.png")
+      .option(
+          "--poster", flags->poster,
+          "Also a still of this instant (s, or a mark), for where the movie does not play: movie.poster.png")
       .type("SECONDS");
   command
       .option("--under", flags->under,

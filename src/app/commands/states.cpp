@@ -22,6 +22,7 @@
 #include "app/run/columns.h"
 #include "app/run/measures.h"
 #include "app/run/origin.h"
+#include "app/run/run_marks.h"
 #include "app/run/shots.h"
 #include "app/run/trouble.h"
 #include "media/error.h"
@@ -183,7 +184,7 @@ std::string form(const StatesFlags& flags) {
 
 std::vector<sim::Rational> times_of(const StatesFlags& flags, const scene::Scene& scene) {
   if (flags.at && flags.every) throw UsageError("--at and --every exclude each other");
-  if (flags.at) return instants(*flags.at);
+  if (flags.at) return instants(with_instants(scene, "--at", *flags.at));
   const sim::Rational every =
       flags.every ? sim::parse_rational(*flags.every).value_or(sim::Rational{0, 1}) : sim::rational(1);
   if (!(sim::Rational{0, 1} < every))
@@ -336,7 +337,10 @@ OBSCURA_COMMAND(60, states) {
                         "Print the state at given instants as data, without drawing");
   auto flags = std::make_shared<StatesFlags>();
   add_scene(command, flags->scene);
-  command.option("--at", flags->at, "Instants (s), as in 0,0.5,2 or 0:10:0.5").type("LIST");
+  command
+      .option("--at", flags->at,
+              "Instants (s), as in 0,0.5,2 or 0:10:0.5, or marks of the run, as in hit,hit[2]")
+      .type("LIST");
   command.option("--every", flags->every, "Instants from 0 to the duration, this far apart (s) [1]")
       .type("SECONDS");
   command

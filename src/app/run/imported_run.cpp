@@ -1,5 +1,5 @@
-#include "app/console/say.h"
 #include "app/run/imported_run.h"
+#include "app/console/say.h"
 
 #include <fmt/format.h>
 

@@ -12,6 +12,7 @@
 #include "app/console/interrupt.h"
 #include "app/run/columns.h"
 #include "app/run/origin.h"
+#include "app/run/run_marks.h"
 #include "draw/page/measure.h"
 #include "draw/page/readings.h"
 #include "scene/complaints.h"
@@ -109,6 +110,10 @@ std::function<double(const sim::Snapshot&)> reader(const Question& asked, const 
           };
     }
   }
+  // the parts of the potential energy
+  more.push_back("energy.gravity"), more.push_back("energy.springs");
+  if (asked.path == "energy.gravity") return [](const sim::Snapshot& now) { return now.energies.gravity; };
+  if (asked.path == "energy.springs") return [](const sim::Snapshot& now) { return now.energies.springs; };
   // how much a joint bears
   for (std::size_t i = 0; i < cast.joints.size(); ++i) {
     const std::string& whose = cast.joints[i].name;
@@ -146,14 +151,7 @@ struct Tally {
 
 // refuses a mark that no event of the scene makes
 void check_mark(const Question& asked, const scene::Scene& scene) {
-  std::vector<std::string> made;
-  std::visit(
-      [&](const auto& world) {
-        for (const auto& when : world.model.whens)
-          for (const auto& action : when.actions)
-            if (!action.mark.empty()) made.push_back(action.mark);
-      },
-      scene.world);
+  const std::vector<std::string> made = made_marks(scene);
   if (std::find(made.begin(), made.end(), asked.mark) != made.end()) return;
   std::vector<std::string_view> names(made.begin(), made.end());
   for (const auto& [name, over] : kOver) names.push_back(name);

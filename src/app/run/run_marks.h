@@ -1,5 +1,9 @@
 #pragma once
 
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "scene/scene.h"
 
 namespace obscura::app {
@@ -8,5 +12,13 @@ namespace obscura::app {
 /// is run once, where its film or figure asks for that. Says which marks the run does not come to. Throws
 /// Interrupted.
 scene::Scene with_run_marks(scene::Scene scene);
+
+/// The marks that conditions of the scene make.
+std::vector<std::string> made_marks(const scene::Scene& scene);
+
+/// A list of instants as a flag has it, "0.5,hit[2]" or "hit:4:0.5", with the times of the run's marks (s) in
+/// the place of their names: the run is run once, if there is one. Throws UsageError for a mark that no
+/// condition makes or that the run does not come to, and Interrupted.
+std::string with_instants(const scene::Scene& scene, std::string_view flag, const std::string& list);
 
 }  // namespace obscura::app
