@@ -225,8 +225,12 @@ class WhenBuilder {
           handout = true;
           continue;
         }
-        if (second >= 0 && is_point(model_.bodies[std::size_t(first)].shape) &&
-            is_point(model_.bodies[std::size_t(second)].shape)) {
+        const auto mere_point = [&](int body) {
+          return is_point(model_.bodies[std::size_t(body)].shape) &&
+                 std::none_of(model_.rails.begin(), model_.rails.end(),
+                              [&](const auto& rail) { return rail.body == body; });
+        };
+        if (second >= 0 && mere_point(first) && mere_point(second)) {
           points = true;
           continue;
         }

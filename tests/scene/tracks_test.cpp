@@ -323,9 +323,11 @@ TEST(Rail, ASkierLeavesTheRidgeWhereNothingPresses) {
     const double R = 2, begun = 0.1;
     TextRun scene(
         open_room(mode) +
-        "[[track]]\npoints = [[-2, 0], { through = [0, 2], to = [2, 0] }]\nfriction = 0\nelasticity = 0\n" +
+        "[[track]]\nname = \"hill\"\npoints = [[-2, 0], { through = [0, 2], to = [2, 0] }]\nfriction = "
+        "0\nelasticity = 0\n" +
         fmt::format("[[particle]]\nname = \"it\"\nposition = [{:.17g}, {:.17g}]\n", R * std::sin(begun),
-                    R * std::cos(begun)));
+                    R * std::cos(begun)) +
+        "[[when]]\nleaves = [\"it\", \"hill\"]\ndo = [{ mark = \"off\" }]\n");
     // cos(leaves) = 2/3 cos(begun); the time from there by d phi / dt = sqrt(2 g (cos b - cos phi) / R)
     const double leaves = std::acos(2.0 / 3 * std::cos(begun));
     const double time = 2 * integral(
@@ -353,6 +355,8 @@ TEST(Rail, ASkierLeavesTheRidgeWhereNothingPresses) {
                              R * std::cos(leaves) - v * std::sin(leaves) * fell - kTrackG * fell * fell / 2,
                              0);
     EXPECT_NEAR((moving(scene.at(t), scene, "it").position - expected).norm(), 0, 1e-8) << mode;
+    ASSERT_EQ(scene.run->events().size(), 1u) << mode;
+    EXPECT_NEAR(sim::value(scene.run->events()[0].time), time, mode == "event" ? 1e-8 : 1.0 / 600) << mode;
   }
 }
 
