@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
+
+#include "media/image.h"
 
 namespace obscura::gl {
 
@@ -22,8 +25,9 @@ inline bool any(const Bounds& b) { return b.x0 < b.x1 && b.y0 < b.y1; }
 class Damage {
  public:
   static constexpr int kTile = 32;  // px
-  struct Rect {
-    int x = 0, y = 0, width = 0, height = 0;  // px
+  using Rect = media::Rect;
+  struct Corner {
+    float x = 0, y = 0;  // px
   };
 
   Damage(int width, int height);
@@ -31,9 +35,11 @@ class Damage {
   void clear();
   /// `b` lies within the picture.
   void mark(const Bounds& b);
+  /// Every tile that a convex polygon meets within `b`.
+  void mark(std::span<const Corner> polygon, const Bounds& b);
   /// The marked tiles as rectangles without overlap, row by row, tall where rows are alike.
   const std::vector<Rect>& rects();
-  /// The same in few: one a row of tiles, from its first to its last, tall where rows are alike.
+  /// The same in fewer: gaps of a few tiles in a row belong to them.
   const std::vector<Rect>& bands();
   /// Marks all that `other` marks; the sizes must be equal.
   void add(const Damage& other);
@@ -44,6 +50,8 @@ class Damage {
   int width_, height_, columns_, rows_;
   std::vector<std::uint8_t> tiles_;
   std::vector<Rect> rects_;
+
+  const std::vector<Rect>& runs(int gap);
 };
 
 }  // namespace obscura::gl

@@ -1,6 +1,7 @@
 #include "gl/painter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -150,6 +151,16 @@ bool Painter::touches(const Bounds& bounds, Damage& damage) const {
   return true;
 }
 
+// the tiles that a convex polygon meets, where it is seen
+void Painter::mark(std::span<const Damage::Corner> polygon, const Bounds& seen, Damage& damage) {
+  Bounds bounds{polygon[0].x, polygon[0].y, polygon[0].x, polygon[0].y};
+  for (const Damage::Corner& p : polygon)
+    bounds = {std::min(bounds.x0, p.x), std::min(bounds.y0, p.y), std::max(bounds.x1, p.x),
+              std::max(bounds.y1, p.y)};
+  const Bounds within = bounds & seen;
+  if (within.x0 <= within.x1 && within.y0 <= within.y1) damage.mark(polygon, within);
+}
+
 void Painter::run(Shape shape, int first, int end) {
   const auto same = [](const Damage::Rect& a, const Damage::Rect& b) {
     return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
@@ -180,10 +191,15 @@ void Painter::add(const draw::Box& box, Damage& damage) {
   const double ry = std::abs(u.y()) * half.x() + std::abs(v.y()) * half.y() + kMargin;
   const Bounds bounds{float(center.x() - rx), float(center.y() - ry), float(center.x() + rx),
                       float(center.y() + ry)};
-  if (!touches(bounds, damage)) return;
+  const Bounds seen = bounds & clip_;
+  if (!any(seen)) return;
+  const draw::Point a = (half.x() + kMargin) * u, b = (half.y() + kMargin) * v;
+  const auto corner = [&](const draw::Point& way) {
+    return Damage::Corner{float(center.x() + way.x()), float(center.y() + way.y())};
+  };
+  mark(std::array{corner(a + b), corner(a - b), corner(-a - b), corner(b - a)}, seen, damage);
 
   // above all that came before it in the tiles that it touches
-  const Bounds seen = bounds & clip_;
   const int columns = width_ / kTile + 1, rows = height_ / kTile + 1;
   layers_.resize(std::size_t(columns) * rows);
   int layer = 0;
@@ -227,10 +243,19 @@ void Painter::lay_boxes() {
 void Painter::add(const draw::List& list, const draw::Stroke& stroke, Damage& damage) {
   const std::span nodes(list.nodes.data() + stroke.begin, std::size_t(stroke.end - stroke.begin));
   const std::size_t vertices = strip_.vertices.size(), first = strip_.indices.size();
-  if (!touches(add_stroke(nodes, stroke, scale_, strip_), damage)) {
+  const Bounds seen = add_stroke(nodes, stroke, scale_, strip_) & clip_;
+  if (!any(seen)) {
     strip_.vertices.resize(vertices);
     strip_.indices.resize(first);
     return;
+  }
+  for (std::size_t i = first; i + 2 < strip_.indices.size(); i += 3) {
+    Damage::Corner triangle[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const StripVertex& v = strip_.vertices[strip_.indices[i + k]];
+      triangle[k] = {v.x, v.y};
+    }
+    mark(triangle, seen, damage);
   }
   run(stroke.blend == draw::Blend::darken    ? Shape::darken
       : stroke.blend == draw::Blend::lighten ? Shape::lighten

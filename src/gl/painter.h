@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "draw/picture/list.h"
@@ -65,6 +66,7 @@ class Painter {
   void add(const draw::List& list, const draw::Polygon& polygon, Damage& damage);
   void add(const draw::Text& text, Damage& damage);
   bool touches(const Bounds& bounds, Damage& damage) const;
+  static void mark(std::span<const Damage::Corner> polygon, const Bounds& seen, Damage& damage);
   void run(Shape shape, int first, int end);
   void upload();
   void draw(const Run& run, draw::Color ground, bool transparent);

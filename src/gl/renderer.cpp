@@ -94,7 +94,9 @@ struct Renderer::Impl {
   draw::Color ground;
   bool transparent = false;
   std::shared_ptr<const draw::List> still;
-  media::Image image;  // what was read last
+  media::Image image;                // what was read last
+  std::vector<media::Rect> changed;  // where
+  bool all_changed = true;
 
   Impl(int w, int h, const ContextOptions& options)
       : width(w),
@@ -217,11 +219,10 @@ const media::Image& Renderer::draw(const draw::Picture& picture) {
   my.image.height = my.height;
   my.image.pixels.resize(std::size_t(4) * my.width * my.height);
   changed.add(my.damage);
-  if (anew) {
-    my.read({0, 0, my.width, my.height});
-  } else {
-    for (const Damage::Rect& rect : changed.bands()) my.read(rect);
-  }
+  my.changed.assign(1, {0, 0, my.width, my.height});
+  my.all_changed = anew;
+  if (!anew) my.changed = changed.bands();
+  for (const Damage::Rect& rect : my.changed) my.read(rect);
 
   const GLenum error = my.gl.GetError();
   if (error != GL_NO_ERROR || !my.trouble.empty()) {
@@ -230,6 +231,10 @@ const media::Image& Renderer::draw(const draw::Picture& picture) {
                 (my.trouble.empty() ? "" : ": " + std::exchange(my.trouble, "")));
   }
   return my.image;
+}
+
+const std::vector<media::Rect>* Renderer::changed() const {
+  return impl_->all_changed ? nullptr : &impl_->changed;
 }
 
 std::string Renderer::version() const { return impl_->version; }

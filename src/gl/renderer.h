@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "draw/picture/list.h"
 #include "gl/context.h"
@@ -23,6 +24,8 @@ class Renderer {
   void draw(const draw::Picture& picture, media::Image& out);
   /// The same without a copy of what did not change. The image is good until the next call.
   const media::Image& draw(const draw::Picture& picture);
+  /// Where the last image may differ from the one before, without overlap; nullptr: anywhere.
+  const std::vector<media::Rect>* changed() const;
 
   /// GL_VERSION, GL_RENDERER, and the back end, for the origin.
   std::string version() const;

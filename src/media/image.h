@@ -8,6 +8,11 @@
 
 namespace obscura::media {
 
+/// A part of a picture, px.
+struct Rect {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
 /// RGBA8, sRGB, row 0 at the top, rows without gaps, alpha not multiplied in.
 struct Image {
   int width = 0, height = 0;

@@ -67,8 +67,9 @@ class SegmentEncoder {
   ~SegmentEncoder();
   SegmentEncoder(SegmentEncoder&&) noexcept;
 
-  /// Adds a frame of the spec's size. Throws media::Error.
-  void add(const Image& frame);
+  /// Adds a frame of the spec's size. `changed`: where alone it differs from the frame before, in rectangles
+  /// of even places and sizes; the bytes are the same without. Throws media::Error.
+  void add(const Image& frame, const std::vector<Rect>* changed = nullptr);
   /// The whole segment; the encoder is spent.
   Segment finish();
 

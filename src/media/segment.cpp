@@ -31,12 +31,12 @@ class LibavEncoder {
     segment_.extradata.assign(context_->extradata, context_->extradata + context_->extradata_size);
   }
 
-  void add(const Image& image) {
+  void add(const Image& image, const std::vector<Rect>* changed) {
     assert(image.width == frame_->width && image.height == frame_->height);
     listen();
     // the encoder may still hold the planes of the frame before
     if (libav().av_frame_make_writable(frame_.get()) < 0) throw std::bad_alloc();
-    fill(image);
+    fill(image, segment_.frames > 0 ? changed : nullptr);
     frame_->pts = segment_.frames++;
     send(frame_.get());
   }
@@ -52,8 +52,8 @@ class LibavEncoder {
   }
 
  private:
-  // the frame's planes
-  void fill(const Image& image) {
+  // the frame's planes, which have the frame before
+  void fill(const Image& image, const std::vector<Rect>* changed) {
     const auto deep = [&](int k) { return reinterpret_cast<std::uint16_t*>(frame_->data[k]); };
     const auto stride = [&](int k) { return frame_->linesize[k] / 2; };
     const Yuv420 planes{frame_->data[0],     frame_->data[1],     frame_->data[2],
@@ -69,7 +69,8 @@ class LibavEncoder {
         return alpha_plane(image, frame_->data[3], frame_->linesize[3]);
       }
       default:
-        return convert(image, planes);
+        if (!changed) return convert(image, planes);
+        for (const Rect& rect : *changed) convert(image, planes, rect);
     }
   }
 
@@ -111,8 +112,11 @@ SegmentEncoder::SegmentEncoder(const std::string& path, const MovieSpec& spec)
 SegmentEncoder::~SegmentEncoder() = default;
 SegmentEncoder::SegmentEncoder(SegmentEncoder&&) noexcept = default;
 
-void SegmentEncoder::add(const Image& frame) {
-  std::visit([&](auto& encoder) { encoder.add(frame); }, impl_->encoder);
+void SegmentEncoder::add(const Image& frame, const std::vector<Rect>* changed) {
+  if (auto* libav = std::get_if<LibavEncoder>(&impl_->encoder))
+    libav->add(frame, changed);
+  else
+    std::get<GifEncoder>(impl_->encoder).add(frame);
 }
 
 Segment SegmentEncoder::finish() {

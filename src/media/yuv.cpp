@@ -182,6 +182,31 @@ __attribute__((target("avx2"))) int avx2_rows(const std::uint8_t* top, const std
 
 #endif
 
+void convert(const Image& image, const Yuv420& out, const Rect& part, [[maybe_unused]] Lanes lanes) {
+  assert(image.width % 2 == 0 && image.height % 2 == 0 && available(lanes));
+  assert(part.x % 2 == 0 && part.y % 2 == 0 && part.width % 2 == 0 && part.height % 2 == 0);
+  for (int row = part.y; row < part.y + part.height; row += 2) {
+    const std::uint8_t *top = image.row(row) + 4 * part.x, *bottom = image.row(row + 1) + 4 * part.x;
+    std::uint8_t* y0 = out.y + std::ptrdiff_t(out.y_stride) * row + part.x;
+    std::uint8_t* y1 = y0 + out.y_stride;
+    std::uint8_t* u = out.u + std::ptrdiff_t(out.u_stride) * (row / 2) + part.x / 2;
+    std::uint8_t* v = out.v + std::ptrdiff_t(out.v_stride) * (row / 2) + part.x / 2;
+    int done = 0;
+#if defined(__x86_64__)
+    if (lanes == Lanes::avx2) done = avx2_rows(top, bottom, part.width, y0, y1, u, v);
+    if (lanes == Lanes::sse2) done = sse2_rows(top, bottom, part.width, y0, y1, u, v);
+#endif
+    scalar_rows(top, bottom, done, part.width, y0, y1, u, v);
+  }
+}
+
+Lanes widest() {
+  static const Lanes lanes = available(Lanes::avx2)   ? Lanes::avx2
+                             : available(Lanes::sse2) ? Lanes::sse2
+                                                      : Lanes::scalar;
+  return lanes;
+}
+
 }  // namespace
 
 bool available(Lanes lanes) {
@@ -192,28 +217,12 @@ bool available(Lanes lanes) {
 #endif
 }
 
-void convert(const Image& image, const Yuv420& out) {
-  static const Lanes widest = available(Lanes::avx2)   ? Lanes::avx2
-                              : available(Lanes::sse2) ? Lanes::sse2
-                                                       : Lanes::scalar;
-  convert(image, out, widest);
-}
+void convert(const Image& image, const Yuv420& out) { convert(image, out, widest()); }
 
 void convert(const Image& image, const Yuv420& out, Lanes lanes) {
-  assert(image.width % 2 == 0 && image.height % 2 == 0 && available(lanes));
-  for (int row = 0; row < image.height; row += 2) {
-    const std::uint8_t *top = image.row(row), *bottom = image.row(row + 1);
-    std::uint8_t* y0 = out.y + std::ptrdiff_t(out.y_stride) * row;
-    std::uint8_t* y1 = y0 + out.y_stride;
-    std::uint8_t* u = out.u + std::ptrdiff_t(out.u_stride) * (row / 2);
-    std::uint8_t* v = out.v + std::ptrdiff_t(out.v_stride) * (row / 2);
-    int done = 0;
-#if defined(__x86_64__)
-    if (lanes == Lanes::avx2) done = avx2_rows(top, bottom, image.width, y0, y1, u, v);
-    if (lanes == Lanes::sse2) done = sse2_rows(top, bottom, image.width, y0, y1, u, v);
-#endif
-    scalar_rows(top, bottom, done, image.width, y0, y1, u, v);
-  }
+  convert(image, out, {0, 0, image.width, image.height}, lanes);
 }
+
+void convert(const Image& image, const Yuv420& out, const Rect& part) { convert(image, out, part, widest()); }
 
 }  // namespace obscura::media

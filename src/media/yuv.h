@@ -25,5 +25,7 @@ bool available(Lanes lanes);
 /// the nearest integer (halves up). The widest lanes this processor has, unless told.
 void convert(const Image& image, const Yuv420& out);
 void convert(const Image& image, const Yuv420& out, Lanes lanes);
+/// The same of a part alone, whose place and size are even.
+void convert(const Image& image, const Yuv420& out, const Rect& part);
 
 }  // namespace obscura::media

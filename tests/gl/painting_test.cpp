@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <random>
 #include <thread>
+#include <vector>
 
 #include "gl/back_ends.h"
 #include "gl/error.h"
@@ -109,6 +113,62 @@ TEST(Painting, DoesNotDependOnWhatWasDrawnBefore) {
   emptied.still = nullptr;
   const media::Image blank = drawn(renderer, emptied);
   for (int x = 0; x < blank.width; ++x) EXPECT_EQ(at(blank, x, 90), kGround);
+}
+
+// Thin things at all angles, round and sharp turns, boxes, words: what one picture leaves of the one before
+// is what a new renderer draws, and images differ only where the renderer says so.
+TEST(Painting, OnlyWhatChangesIsDrawnAndReadAndThatIsAll) {
+  std::mt19937 random(7);
+  const auto uniform = [&](double from, double to) {
+    return std::uniform_real_distribution<>(from, to)(random);
+  };
+  const auto place = [&] { return draw::Point(uniform(-200, 2100), uniform(-200, 1280)); };
+  Renderer renderer(640, 360);
+  auto still = std::make_shared<draw::List>();
+  still->add(draw::Disc{{900, 500}, 300, 10, kBlue, kRed});
+  media::Image before;
+  double read = 0;
+  constexpr int kPictures = 60;
+  for (int k = 0; k < kPictures; ++k) {
+    draw::Picture picture;
+    picture.aspect = 640.0 / 360;
+    picture.ground = kGround;
+    picture.still = still;
+    const int things = int(uniform(0, 4));
+    for (int i = 0; i < things; ++i) {
+      const double width = std::exp(uniform(0, 4.5));
+      std::vector<draw::Node> nodes;
+      const int count = 1 + int(uniform(0, 5));
+      for (int n = 0; n < count; ++n) nodes.push_back({place(), width, kRed});
+      picture.moving.add(nodes, uniform(0, 1) < 0.5 ? draw::Cap::butt : draw::Cap::round, draw::Blend::over,
+                         uniform(0, 1) < 0.3);
+      const double angle = uniform(0, 7);
+      draw::Box box;
+      box.center = place(), box.x_axis = {std::cos(angle), std::sin(angle)};
+      box.half = {std::exp(uniform(0, 6.5)), std::exp(uniform(-1, 3))}, box.line = uniform(0, 6);
+      box.fill = {158, 218, 201}, box.outline = kBlue;
+      picture.moving.add(box);
+    }
+    picture.moving.add(
+        draw::Text{place(), draw::Align::left, {{"word", draw::Face::bold, 60, {31, 35, 40}}}});
+    const media::Image& now = renderer.draw(picture);
+    Renderer fresh(640, 360);
+    ASSERT_EQ(now, drawn(fresh, picture)) << k;
+    if (const auto* changed = renderer.changed()) {
+      for (const media::Rect& rect : *changed) {
+        read += double(rect.width) * rect.height / (640 * 360) / kPictures;
+        ASSERT_TRUE(rect.x % 2 == 0 && rect.y % 2 == 0 && rect.width % 2 == 0 && rect.height % 2 == 0);
+        for (int y = rect.y; y < rect.y + rect.height; ++y)
+          std::copy_n(now.row(y) + 4 * rect.x, 4 * rect.width, before.row(y) + 4 * rect.x);
+      }
+      ASSERT_EQ(before, now) << k;
+    } else {
+      EXPECT_EQ(k, 0);
+    }
+    before = now;
+  }
+  // bounds of all things would be most of the picture
+  EXPECT_LT(read, 0.6);
 }
 
 TEST(Painting, SeveralThreadsDrawTheSameBytes) {

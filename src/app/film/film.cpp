@@ -239,7 +239,7 @@ Filming::DrawnSegment Filming::print(FilmSegment take, FrameRenderer& darkroom) 
     }
     const media::Image& image = darkroom.print(take, i, (pictures() || movie()) && options_.transparent);
     if (encoder) {
-      encoder->add(image);
+      encoder->add(image, darkroom.changed());
       states.add(take.number * journal_.take_frames + std::int64_t(i), take.states[i], take.all_bodies(i));
     }
     if (output_.form == Output::Form::pipe) print.images.push_back(image);

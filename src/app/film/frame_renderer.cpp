@@ -24,7 +24,11 @@ const media::Image& FrameRenderer::print(const FilmSegment& take, std::size_t fr
   };
   std::size_t exposures = take.open[frame].size();
   for (const RunSegment& run : take.others) exposures = std::min(exposures, run.open[frame].size());
-  if (exposures == 0) return draw(0);
+  if (exposures == 0) {
+    ++of_one_instant_;
+    return draw(0);
+  }
+  of_one_instant_ = 0;
   for (std::size_t k = 1; k <= exposures; ++k) exposure_.add(draw(k));
   return exposure_.develop();
 }

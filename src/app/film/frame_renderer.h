@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "app/film/frame_painter.h"
 #include "app/run/simulation.h"
@@ -20,12 +21,20 @@ class FrameRenderer {
   /// The picture of a frame of a take, good until the next one. `transparent`: with the ground left out.
   const media::Image& print(const FilmSegment& take, std::size_t frame, bool transparent);
 
+  /// Where the last picture may differ from the one before; nullptr: anywhere.
+  const std::vector<media::Rect>* changed() const {
+    return of_one_instant_ > 1 ? renderer_.changed() : nullptr;
+  }
+
   /// The same as things, not yet pixels; of the instant alone.
   draw::Picture frame(const FilmSegment& take, std::size_t frame) const {
     return painter_.frame(take, frame);
   }
   /// The pixels of a picture, good until the next ones.
-  const media::Image& pixels(const draw::Picture& picture) { return renderer_.draw(picture); }
+  const media::Image& pixels(const draw::Picture& picture) {
+    of_one_instant_ = 0;
+    return renderer_.draw(picture);
+  }
 
   const gl::Renderer& renderer() const { return renderer_; }
   const sim::SceneInfo& scene_info() const { return painter_.scene_info(); }
@@ -34,6 +43,7 @@ class FrameRenderer {
   gl::Renderer renderer_;
   FramePainter painter_;
   media::Exposure exposure_;
+  int of_one_instant_ = 0;  // how many pictures were, one after the other
 };
 
 }  // namespace obscura::app
