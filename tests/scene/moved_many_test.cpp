@@ -75,6 +75,44 @@ TEST(MovedMany, ARacketThatAcceleratesGivesWhatItHasThen) {
   EXPECT_NEAR(now.bodies[ball].position.x(), 2 * u * (0.6 - met), 1e-6);
 }
 
+// A crate that friction holds on a turntable in space goes round at its radius, and on a bar in the plane
+// that rocks it keeps its place: what sticks follows the matter under it, to the second order, with the work
+// that it is given in the books.
+TEST(MovedMany, WhatSticksToWhatTurnsKeepsItsPlaceOnIt) {
+  const double quarter = kFullTurn / 4, rocks = 15 * kFullTurn / 360;
+  for (const bool space : {false, true}) {
+    double off[2] = {};
+    for (const int rate : {600, 1200}) {
+      TextRun scene(fmt::format(
+          "duration = 10\n[room]\nsize = [8, 8{0}]\ncorner = [-4, -4{1}]\nwalls = \"none\"\n[physics]\n"
+          "rate = {2}\nsolver = \"iterative\"\n[[box]]\nsize = [4, 0.2{3}]\nposition = [0, 0{4}]\nfriction = "
+          "1\n"
+          "motion = {{ {5} }}\n[[box]]\nname = \"crate\"\nsize = [0.4, 0.4{6}]\nposition = [1, 0.3{4}]\n"
+          "velocity = {7}\nspin = {8}\nfriction = 1\nelasticity = 0\n",
+          space ? ", 8" : "", space ? ", -4" : "", rate, space ? ", 4" : "", space ? ", 0" : "",
+          space ? "angle = \"90*t\", axis = [0, 1, 0]" : "angle = \"5*sin(3*t)\"", space ? ", 0.4" : "",
+          space ? fmt::format("[0, 0, {:.17g}]", -quarter)
+                : fmt::format("[{:.17g}, {:.17g}]", -0.3 * rocks, rocks),
+          space ? "[0, 90, 0]" : "15"));
+      const std::size_t crate = number_of(scene, "crate");
+      const double begun = scene.at(0).energies.total();
+      for (const double t : {0.8, 2.0}) {
+        const sim::Snapshot now = scene.at(t);
+        const sim::Vec3 at = now.bodies[crate].position;
+        const double angle = space ? quarter * t : rocks / 3 * std::sin(3 * t), c = std::cos(angle),
+                     s = std::sin(angle);
+        const sim::Vec3 right = space ? sim::Vec3(c, 0.3, -s) : sim::Vec3(c - 0.3 * s, s + 0.3 * c, 0);
+        // in the plane the normal turns, by which the work of the normal force is of the first order
+        EXPECT_NEAR(now.energies.total() - begun, now.energies.work, space ? 1e-6 : 0.03 / rate)
+            << space << rate << t;
+        off[rate / 1200] = std::max(off[rate / 1200], (at - right).norm());
+      }
+    }
+    EXPECT_LT(off[0], 1e-4) << space;
+    EXPECT_LT(off[1], off[0] / 3.5) << space;
+  }
+}
+
 // A block at rest on a belt of speed u slips for u / (mu g), then goes along; the belt has given m u^2, half
 // of which is heat.
 TEST(MovedMany, ABlockSticksToABeltWhenItHasItsSpeed) {

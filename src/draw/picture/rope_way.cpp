@@ -40,24 +40,66 @@ std::vector<RopeLine> rope_lines(const sim::SceneInfo::Joint& joint, const sim::
   return all;
 }
 
+namespace {
+
+/// A piece of a rope where it lies on the wheel at its a or at its b, as it goes on from there.
+struct OnWheel {
+  Vec3 along = Vec3::UnitX();
+  double offset = 0;
+};
+OnWheel leaving(const sim::SceneInfo::Joint& joint, bool at_a, const sim::Snapshot& now) {
+  const std::vector<RopeLine> lines = rope_lines(joint, now);
+  return at_a ? OnWheel{lines.front().along, joint.offset_a} : OnWheel{-lines.back().along, -joint.offset_b};
+}
+
+/// The arc of a rope's piece on the wheel at its a or its b, from where the piece before it in the list comes
+/// to that wheel to where this one leaves it; nothing where there is no such piece, or it has broken.
+std::vector<Vec3> arc_on_wheel(const sim::SceneInfo& cast, std::size_t i, bool at_a,
+                               const sim::Snapshot& now) {
+  const sim::SceneInfo::Joint& joint = cast.joints[i];
+  if ((at_a ? joint.offset_a : joint.offset_b) == 0) return {};
+  const int wheel = (at_a ? joint.places.front() : joint.places.back()).body;
+  const OnWheel after = leaving(joint, at_a, now);
+  for (std::size_t k = i; k-- > 0;) {
+    const sim::SceneInfo::Joint& other = cast.joints[k];
+    if (other.kind != joint.kind || other.rope != joint.rope || other.places.empty() || now.joints[k].broken)
+      continue;
+    for (const bool its_a : {true, false}) {
+      if ((its_a ? other.offset_a : other.offset_b) == 0 ||
+          (its_a ? other.places.front() : other.places.back()).body != wheel)
+        continue;
+      const Vec3 before = -leaving(other, its_a, now).along, along = after.along;
+      double turn = std::atan2(before.x() * along.y() - before.y() * along.x(), before.dot(along));
+      if (turn != 0 && (turn > 0) != (after.offset > 0))
+        turn += (after.offset > 0 ? 2 : -2) * std::numbers::pi;
+      const Vec3 center = place_of(now, at_a ? joint.places.front() : joint.places.back());
+      const int steps = std::max(1, int(std::ceil(std::fabs(turn) / kArc)));
+      std::vector<Vec3> arc;
+      for (int n = 0; n < steps; ++n) {
+        const double s = std::sin(turn * n / steps), c = std::cos(turn * n / steps);
+        const Vec3 d(c * before.x() - s * before.y(), s * before.x() + c * before.y(), 0);
+        arc.push_back(center + after.offset * Vec3(d.y(), -d.x(), 0));
+      }
+      return arc;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
 std::vector<Vec3> rope_way(const sim::SceneInfo& cast, std::size_t i, const sim::Snapshot& now) {
   const sim::SceneInfo::Joint& joint = cast.joints[i];
   const std::vector<RopeLine> lines = rope_lines(joint, now);
   std::vector<Vec3> way;
-  if (joint.offset_a != 0 && i > 0 && !now.joints[i - 1].broken) {
-    const Vec3 before = rope_lines(cast.joints[i - 1], now).back().along, after = lines.front().along;
-    const Vec3 center = place_of(now, joint.places.front());
-    double turn = std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
-    if (turn != 0 && (turn > 0) != (joint.offset_a > 0))
-      turn += (joint.offset_a > 0 ? 2 : -2) * std::numbers::pi;
-    const int steps = std::max(1, int(std::ceil(std::fabs(turn) / kArc)));
-    for (int k = 0; k < steps; ++k) {
-      const double s = std::sin(turn * k / steps), c = std::cos(turn * k / steps);
-      const Vec3 d(c * before.x() - s * before.y(), s * before.x() + c * before.y(), 0);
-      way.push_back(center + joint.offset_a * Vec3(d.y(), -d.x(), 0));
-    }
-  }
   for (const RopeLine& line : lines) way.push_back(line.from), way.push_back(line.to);
+  for (const bool at_a : {true, false}) {
+    const std::vector<Vec3> arc = arc_on_wheel(cast, i, at_a, now);
+    if (at_a)
+      way.insert(way.begin(), arc.begin(), arc.end());
+    else
+      way.insert(way.end(), arc.rbegin(), arc.rend());
+  }
   return way;
 }
 

@@ -63,6 +63,7 @@ struct SceneInfo {
                                      // ends of both joints
     // of a pulley: the wheels at its ends, as sim::Winding has them; of a gear: its pitch circles
     double offset_a = 0, offset_b = 0;
+    int rope = 0;  // of a pulley: pieces of one rope have the same number
     Vec3 tooth_a = Vec3::UnitX(), tooth_b = Vec3::UnitX();  // of a gear, in the bodies' frames
     Vec3 start = Vec3::Zero();                              // from its a to its b at the start of the run, m
   };

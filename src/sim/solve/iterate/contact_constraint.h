@@ -18,12 +18,16 @@ struct ContactConstraint {
   Vec<D> tangent_impulse = Vec<D>::Zero();  // N s
   Vec<D> impact_impulse = Vec<D>::Zero();   // N s, of impacts within the substep
   Vec<D> belt = Vec<D>::Zero();             // m/s: what belts add to the slip of a against b
-  int renewals = 0;                         // of its features, since the substep began
-  bool after = false;                       // of a body that had an impact
-  bool passes = false;                      // however it looks, it does not close with an impact
-  bool bounces = false;                     // an impact that is left to the iterations
-  bool closing = false;                     // slowly
-  double closes = 0;                        // when it bounces, s from the start of the substep
+  Vec<D> drift = Vec<D>::Zero();  // m/s: what arms that turn within the substep add to it at its end
+  int renewals = 0;               // of its features, since the substep began
+  bool after = false;             // of a body that had an impact
+  bool passes = false;            // however it looks, it does not close with an impact
+  bool bounces = false;           // an impact that is left to the iterations
+  bool closing = false;           // slowly
+  double closes = 0;              // when it bounces, s from the start of the substep
+
+  /// m/s: what is to be added to the slip at the end of the substep.
+  Vec<D> surface() const { return belt + drift; }
 };
 
 }  // namespace obscura::sim

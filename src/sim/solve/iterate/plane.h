@@ -89,6 +89,7 @@ class PlaneIterative final : public Iterative<2> {
   void share_free_motion(StepPart<D> part);
   void integrate_jointed(StepPart<D> part);
   void move_driven(StepPart<D> part);
+  void find_drifts(double h);
   void place_driven(State<D>& state);
   void foresee_driven(double t);
   double belt_of(int body) const { return body < 0 ? 0 : model_.bodies[std::size_t(body)].belt[0]; }

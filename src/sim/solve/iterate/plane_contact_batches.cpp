@@ -213,8 +213,9 @@ void PlaneIterative::fill_lane(int i, const State<D>& state) {
   g.sight[lane] = sight, g.mu[lane] = pair.material.friction, g.radius[lane] = radius;
   g.per_width[lane] = 1 / std::max(2 * thin, kPointWidth * model_.scale);
   const double belt = belt_of(pair.a) + belt_of(pair.b);
-  g.belt[lane] = belt;
-  g.belts = static_cast<unsigned char>(belt != 0 ? g.belts | bit : g.belts & ~bit);
+  g.belt[lane] = g.surface[0][lane] = g.surface[1][lane] = belt;
+  const bool carried = belt != 0 || drives_.number(pair.a) >= 0 || drives_.number(pair.b) >= 0;
+  g.belts = static_cast<unsigned char>(carried ? g.belts | bit : g.belts & ~bit);
   g.far[lane] = far, g.calm[lane] = round ? -1 : pair.touches == 1 ? 1e300 : kCalm * thin / span_;
   // in terms of bodies' own bounding radii
   double least = cores_.bounding_radius[pair.a];

@@ -133,14 +133,14 @@ OBSCURA_INLINE void solve_normals(Two<V>& two, const WideRow<V>& r0, const WideR
   l0 = next0, l1 = next1;
 }
 
-// `belt`: what belts add to the speed across, of four pairs; null: nothing
+// `surface`: what belts and arms that turn add to the speed across, of four pairs; null: nothing
 template <class V>
 OBSCURA_INLINE void solve_friction(Two<V>& two, const WideRow<V>& r, const V& most, V& lt,
-                                   const double* belt = nullptr) {
+                                   const double* surface = nullptr) {
   const V tx = -r.ny, ty = r.nx;
   const V kt = (two.a.w + two.b.w) + (two.iia * (r.ta * r.ta) + two.iib * (r.tb * r.tb));
   V slips = two.along(tx, ty, r.ta, r.tb);
-  if (belt) slips += load<V>(belt);
+  if (surface) slips += load<V>(surface);
   const V wanted = lt - slips / (kt + kTiny);
   const V next = larger<V>(smaller<V>(wanted, most), -most);
   two.push(tx, ty, r.ta, r.tb, next - lt);
@@ -339,9 +339,8 @@ OBSCURA_INLINE int iterate_all(ContactBatch* batches, int count, const Pose* pos
       V l1 = load<V>(g->p[1] + lane), t1 = load<V>(g->q[1] + lane);
       [[maybe_unused]] const Two<V> begun = two;
       [[maybe_unused]] const V begun_l0 = l0, begun_t0 = t0, begun_l1 = l1, begun_t1 = t1;
-      const double* belt = g->belts ? g->belt + lane : nullptr;
-      solve_friction<V>(two, r0, mu * l0, t0, belt);
-      solve_friction<V>(two, r1, mu * l1, t1, belt);
+      solve_friction<V>(two, r0, mu * l0, t0, g->belts ? g->surface[0] + lane : nullptr);
+      solve_friction<V>(two, r1, mu * l1, t1, g->belts ? g->surface[1] + lane : nullptr);
       const V sight = load<V>(g->sight + lane), never = V{} - 1e9;
       const V open0 = pick<V>(r0.gap > sight, never, smaller<V>(-r0.gap * per_h, none));
       const V open1 = pick<V>(r1.gap > sight, never, smaller<V>(-r1.gap * per_h, none));
@@ -510,6 +509,7 @@ void copy_lane(const ContactBatch& from, int i, ContactBatch& to, int k) {
   to.calm[k] = from.calm[i], to.far[k] = from.far[i], to.impact_speed[k] = from.impact_speed[i],
   to.radius[k] = from.radius[i];
   to.sight[k] = from.sight[i], to.per_width[k] = from.per_width[i], to.belt[k] = from.belt[i];
+  for (int touch = 0; touch < 2; ++touch) to.surface[touch][k] = from.surface[touch][i];
   to.belts = static_cast<unsigned char>((to.belts & ~(1 << k)) | (from.belts >> i & 1) << k);
   for (int side = 0; side < 2; ++side) {
     to.cx[side][k] = from.cx[side][i], to.cy[side][k] = from.cy[side][i];

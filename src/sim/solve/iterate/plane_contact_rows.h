@@ -32,7 +32,7 @@ struct alignas(64) ContactBatch {
   unsigned char struck[2];          // the pair has had an impact in this step
   unsigned char boxes;              // both are boxes
   unsigned char used;               // the lane is in use
-  unsigned char belts;              // a body of the pair has a belt
+  unsigned char belts;              // a body of the pair has a belt, or is moved
   unsigned short words[2][kLanes];  // Feature::word()
   alignas(32) double mu[kLanes], iia[kLanes], iib[kLanes];
   double calm[kLanes];          // m/s: at slower relative speeds features do not change until the next search
@@ -42,6 +42,7 @@ struct alignas(64) ContactBatch {
   double per_width[kLanes];     // 1/m: one over the width of the narrower body
   double radius[kLanes];        // sum of both radii, m
   double belt[kLanes];          // m/s: what the belts of both add to v_t
+  double surface[2][kLanes];    // m/s: belts, and what arms that turn within the substep add at its end
   double cx[2][kLanes], cy[2][kLanes];
   double fx[2][kLanes], fy[2][kLanes];
   double d[2][kLanes];  // of two corners: b's radius

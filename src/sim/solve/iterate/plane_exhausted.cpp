@@ -101,7 +101,7 @@ void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) 
           struck ? constants_.least[slot / kLanes].n[k][lane] : std::min(-r.gap / constants_.h, 0.0);
       island.speeds[i] = normal_speed(r, va, vb) - least, island.p[i] = g.p[k][lane];
     } else {
-      island.speeds[i] = tangent_speed(r, va, vb) + (g.belts ? g.belt[lane] : 0);
+      island.speeds[i] = tangent_speed(r, va, vb) + (g.belts ? g.surface[k][lane] : 0);
       island.p[i] = g.q[k][lane];
     }
     for (int j = 0; j <= i; ++j) {

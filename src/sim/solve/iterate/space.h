@@ -153,13 +153,14 @@ class SpaceIterative final : public Iterative<3> {
     const PointBody<D>&a = moving_[touch.a], &b = moving_[touch.b];
     const Vec<D> slips =
         a.v + cross_velocity<D>(a.w, touch.arm_a) - b.v - cross_velocity<D>(b.w, touch.arm_b);
-    return carries_.empty() ? slips : Vec<D>(slips + touch.belt);
+    return carries_.empty() ? slips : Vec<D>(slips + touch.belt + touch.drift);
   }
   // of bodies that are moved, and belts
   bool carries(int body) const {
     return !carries_.empty() && body < int(model_.bodies.size()) && carries_[std::size_t(body)];
   }
   Vec<D> belt(const ContactConstraint& touch) const;
+  Vec<D> drift(int touch, const State<D>& state, double h) const;
   void move_driven(State<D>& state, double t, double h);
   double given(const Vec<D>& impulse, const BodyMotion<D>& a, int body_a, const Vec<D>& arm_a,
                const BodyMotion<D>& b, int body_b, const Vec<D>& arm_b) const;

@@ -409,7 +409,7 @@ void SpaceBatches::build(std::span<const ContactConstraint<3>> contacts, std::sp
   find_pairs(contacts, which, bodies);
   batches_.clear(), rows_.clear(), belts_.clear();
   const bool belts = std::any_of(which.begin(), which.end(),
-                                 [&](int i) { return !contacts[std::size_t(i)].belt.isZero(0); });
+                                 [&](int i) { return !contacts[std::size_t(i)].surface().isZero(0); });
   const int none = int(bodies.size()) - 1;
   int lane = kLanes, level = -1;
   for (const Pair& pair : sorted_) {
@@ -447,7 +447,7 @@ void SpaceBatches::add(const Pair& pair, int lane, std::span<const ContactConstr
     Row& r = rows_[std::size_t(g.first + k)];
     for (int i = 0; i < 3; ++i) {
       r.n[i][lane] = from.n[i], r.arm_a[i][lane] = from.arm_a[i], r.arm_b[i][lane] = from.arm_b[i];
-      if (!belts_.empty()) belts_[std::size_t(g.first + k)].speed[i][lane] = from.belt[i];
+      if (!belts_.empty()) belts_[std::size_t(g.first + k)].speed[i][lane] = from.surface()[i];
     }
     g.mu[lane] = from.mu, g.per_width[lane] = from.per_width;
     r.contact[lane] = number;
