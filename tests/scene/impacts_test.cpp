@@ -1,6 +1,7 @@
 // The impacts of every shipped scene, against the closed form of each: a ball in flight that meets one wall
 // falls along a parabola, strikes where the parabola meets the wall, and comes back with e times its speed.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "scene/text_run.h"
 #include "sim/shape/shape.h"
 #include "sim/step/stepper.h"
 #include "where.h"
@@ -99,6 +101,39 @@ Count impacts(const sim::World<D>& world, double seconds) {
     }
   }
   return count;
+}
+
+// Balls in a row without gravity sleep until something strikes them, one after another, within a step or
+// within the time between two searches for pairs: what strikes one that sleeps does not strike a wall.
+TEST(Impacts, WhatSleepsIsNoWallForWhatStrikesIt) {
+  for (const bool space : {false, true}) {
+    for (const double elasticity : {0.0, 0.5, 1.0}) {
+      for (const double gap : {1e-4, 1e-3, 5e-3, 0.02}) {
+        for (const double v : {0.37, 1.0, 3.0}) {
+          std::string text = fmt::format(
+              "duration = 10\n[room]\nsize = {}\ngravity = {}\nwalls = \"none\"\n[physics]\nsolver = "
+              "\"iterative\"\n",
+              space ? "[40, 4, 4]" : "[40, 4]", space ? "[0, 0, 0]" : "[0, 0]");
+          for (int i = 0; i <= 5; ++i) {
+            const double x = i == 0 ? 3 : 4.4 + i * (0.4 + gap);
+            text += fmt::format(
+                "[[ball]]\nradius = 0.2\nelasticity = {}\nposition = [{:.17g}, 2{}]\nvelocity = [{}, 0{}]\n",
+                elasticity, x, space ? ", 2" : "", i == 0 ? v : 0, space ? ", 0" : "");
+          }
+          TextRun scene(text);
+          const sim::Snapshot now = scene.at(6);
+          double momentum = 0, energy = 0;
+          for (const auto& body : now.bodies)
+            momentum += body.velocity.x() / v / 6, energy += body.velocity.squaredNorm() / (v * v);
+          EXPECT_NEAR(6 * momentum, 1, 1e-9) << space << elasticity << " " << gap << " " << v;
+          EXPECT_LT(energy, 1 + 1e-9) << space << elasticity << " " << gap << " " << v;
+          if (elasticity == 1) {
+            EXPECT_NEAR(now.bodies[5].velocity.x(), v, 1e-9 * v) << space << " " << gap << " " << v;
+          }
+        }
+      }
+    }
+  }
 }
 
 TEST(Impacts, OfEveryShippedSceneAreThoseOfTheClosedForm) {

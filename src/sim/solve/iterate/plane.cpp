@@ -29,6 +29,8 @@ constexpr double kStrained = 0.02;      // how far that is, of its half thicknes
 constexpr int kSettlingPairs = 20000;   // more, of unsettled pairs: pairs times iterations, at least
 constexpr int kSettlingIterations = 8;  // or as many as so many iterations of all pairs
 
+constexpr double kStruck = 2;  // times as fast as what strikes it: something light
+
 constexpr int kFewPairs = 300;      // accelerated
 constexpr int kFewIterations = 50;  // more, of few pairs that others do not touch
 
@@ -82,6 +84,7 @@ bool PlaneIterative::find_contacts(StepPart<D> step) {
   }
   const bool known = gather(state);
   if (!known) pairs_.adopt(state);
+  if (Sleep<D>::any(state)) held = wake_struck(state, step.h) || held;
   if (due || held) foresee_driven(step.t);
   if (due || held) {
     update_pairs(state, known);
@@ -382,7 +385,9 @@ void PlaneIterative::update_pairs(State<D>& state, bool known) {
   const int patience = state.contacts.empty() ? 0 : plane::NearPairs::patience(state.step / every_);
   bool changed = pairs_.find(state, poses_, span_, patience);
   if (Sleep<D>::any(state)) place_contacts(state, false);
-  if (sleep_.wake(state, state.contacts, span_, span_ / double(every_ * substeps_))) {
+  // gaps of contacts may be those of a step before
+  const double step = span_ / double(every_);
+  if (sleep_.wake(state, state.contacts, span_ + step, step / double(substeps_))) {
     pairs_.find(state, poses_, span_, 0);
     changed = true;
   }
@@ -395,6 +400,60 @@ void PlaneIterative::update_pairs(State<D>& state, bool known) {
     first_guess(state);
     build_batches(state, false);
   }
+}
+
+// Wakes what a body may strike within the step, and what that may strike then, as each search for pairs does
+// for the time until the next: something may have become faster since. True if any woke.
+bool PlaneIterative::wake_struck(State<D>& state, double h) {
+  const int n = int(turns_.size());
+  const auto moves = [&](int body) { return !fixed_[body] && !state.frozen[body]; };
+  const auto meets = [&](const Pair& pair) {
+    int words[2];
+    pairs_.features(pair, poses_[pair.a], poses_[pair.b], words);
+    for (const int word : words) {
+      const Feature feature = Feature::of(word);
+      if (feature.kind != Feature::none &&
+          pairs_.place(pair, poses_, feature).gap < h * (swift_[pair.a] + swift_[pair.b]))
+        return true;
+    }
+    return false;
+  };
+  swift_.clear();
+  double fastest = 0;
+  bool any = false;
+  for (bool more = true; more;) {
+    more = false, struck_.clear();
+    const auto mixed = [&](const Pair& pair) {
+      if (pair.b < 0 || fixed_[pair.a] || fixed_[pair.b]) return false;
+      return state.frozen[pair.a] != state.frozen[pair.b];
+    };
+    const std::vector<Pair>& all = pairs_.all();
+    if (std::none_of(all.begin(), all.end(), mixed)) break;
+    if (swift_.empty()) {
+      swift_.assign(std::size_t(n), 0);
+      for (int i = 0; i < n; ++i) {
+        // what is quiet gets no faster, and where it may come the last search has seen
+        if (!moves(i) || state.quiet[i] > 0) continue;
+        const Motion& m = moving_[i];
+        swift_[i] = std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * cores_.bounding_radius[i] + h * g_;
+        fastest = std::max(fastest, swift_[i]);
+      }
+    }
+    // something light may leave at twice the speed of what strikes it
+    for (const Pair& pair : all) {
+      if (pair.b < 0 || fixed_[pair.a] || fixed_[pair.b]) continue;
+      if (state.frozen[pair.a] && state.frozen[pair.b]) continue;
+      double &a = swift_[pair.a], &b = swift_[pair.b];
+      const double slower = std::min(a, b), then = kStruck * std::min(fastest, std::max(a, b));
+      if (!(then > slower) || !meets(pair)) continue;
+      if (mixed(pair)) struck_.push_back(state.frozen[pair.a] ? pair.a : pair.b);
+      (a < b ? a : b) = then, more = true;
+    }
+    if (struck_.empty()) continue;
+    sleep_.wake(state, struck_), any = true;
+    pairs_.find(state, poses_, span_, 0);
+  }
+  return any;
 }
 
 // false where the state is not the one that the last step left

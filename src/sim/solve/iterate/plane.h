@@ -35,6 +35,7 @@ class PlaneIterative final : public Iterative<2> {
 
  private:
   bool find_contacts(StepPart<D> step) override;
+  bool wake_struck(State<D>& state, double h);
   void update_sleep(StepPart<D> step) override;
   double closing_rate(double h) const override;
   void renew_contacts(StepPart<D> part) override;
@@ -141,6 +142,8 @@ class PlaneIterative final : public Iterative<2> {
   plane::StepConstants constants_;  // of the substep
   plane::ActiveBodies active_bodies_;
   std::vector<int> few_bodies_, few_groups_;              // of islands of few pairs
+  std::vector<double> swift_;                             // bodies: m/s, how fast they may be in the step
+  std::vector<int> struck_;                               // bodies that sleep
   bool few_stale_ = true;                                 // pairs have come or gone since
   std::vector<plane::LaneImpulses> before_, directions_;  // by group, while iterations are accelerated
   // islands that iterations have not settled
