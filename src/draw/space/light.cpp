@@ -35,7 +35,7 @@ struct Tones {
   double own, white;    // at which s it is the own colour; how much white is in the brightest
 };
 constexpr Tones kPaper{{0x18, 0x1C, 0x22}, 0.55, 0.08, 0.67, 0.45};
-constexpr Tones kScreen{{0x08, 0x0C, 0x12}, 0.33, 0.10, 0.80, 0.22};
+constexpr Tones kScreen{{0x08, 0x0C, 0x12}, 0.36, 0.10, 0.72, 0.26};
 
 Color deep(Color own, const Tones& t) {
   const double most = std::max({own.r, own.g, own.b, std::uint8_t(1)});

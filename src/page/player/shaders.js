@@ -199,11 +199,11 @@ out vec4 ink;
 vec3 darkest() { return (dark > 0.5 ? vec3(8, 12, 18) : vec3(24, 28, 34)) / 255.0; }
 vec3 tone(float s) {
   bool screen = dark > 0.5;
-  float most = max(max(color.r, color.g), max(color.b, 1.0 / 255.0)), own = screen ? 0.8 : 0.67;
-  vec3 deep = (screen ? 0.33 : 0.55) * color * sqrt(color / most);
+  float most = max(max(color.r, color.g), max(color.b, 1.0 / 255.0)), own = screen ? 0.72 : 0.67;
+  vec3 deep = (screen ? 0.36 : 0.55) * color * sqrt(color / most);
   vec3 low = mix(deep, darkest(), screen ? 0.1 : 0.08);
   return s < own ? mix(low, color, max(s, 0.0) / own)
-                 : mix(color, vec3(1), (screen ? 0.22 : 0.45) * (min(s, 1.0) - own) / (1.0 - own));
+                 : mix(color, vec3(1), (screen ? 0.26 : 0.45) * (min(s, 1.0) - own) / (1.0 - own));
 }
 ${MATERIALS}
 void main() {
