@@ -4,11 +4,11 @@
 //   2 checks: cells of one unit, by turns dark; each axis a square wave averaged over the pixel (Quilez, filtered checks)
 
 float wood(vec3 p) {
-  float r = 2.6 * length(p.yz + vec2(0.7, 2.3)) + 0.3 * sin(0.55 * p.x + 1.1 * p.y) + 0.12 * sin(1.7 * p.x + 2.3);
+  float r = 3.1 * length(p.yz + vec2(0.4, 3.7)) + 0.16 * sin(0.31 * p.x + 0.7 * p.y) + 0.05 * sin(1.1 * p.x + 2.3);
   float t = fract(r);
   float late = smoothstep(0.25, 0.85, t) * (1.0 - smoothstep(0.9, 1.0, t));
   float fine = clamp(2.2 - 4.0 * fwidth(r), 0.0, 1.0);
-  return 1.0 - 0.25 * mix(0.4, late, fine);
+  return 1.0 - 0.17 * mix(0.4, late, fine);
 }
 
 float checks(vec3 p) {

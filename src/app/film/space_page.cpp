@@ -120,7 +120,7 @@ SpacePage::SpacePage(const draw::SpaceStage& stage, int part, const draw::Rect& 
     if (lenses_ < 0) lenses_ = first;
     panels.push_back({{"window", {panel.x + k * w.x, panel.y + k * w.y, k * w.width, k * w.height}},
                       {"lens", first},
-                      {"fitted", k * w.width / each.aim.width}});
+                      {"fitted", k * w.width / each.shown}});
   }
   json_["panels"] = panels;
   int places = -1;

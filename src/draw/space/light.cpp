@@ -4,7 +4,8 @@
 //   round
 // f is level and across the light: two upright faces at a right angle that both look away from the light
 // differ by s4/2 at least, however they are turned.
-//   colour  from dark to bright along s, through the body's own
+//   colour  from dark to bright along s, through the body's own, m w: m is its largest part of red, green
+//   and blue, w those parts over m; the dark is a share of m w^1.5, so that it is full and not grey
 // A shadow on the ground is drawn ray by ray: each casts the body's corners on the plane, their hull is dark
 // for that ray, and a place is as dark as the share of rays that do not reach it. So a shadow is sharp where
 // a body stands on the ground and soft where it flies.
@@ -26,6 +27,21 @@ constexpr double kFall = 1.6;     // of the darkness around a contact: how much 
 constexpr double kNear = 1e-3;    // least depth over the target's
 constexpr double kSharp = 0.6;    // page units: shadows softer than this take more rays
 constexpr double kLevel = 0.05;   // light that comes from lower throws no shadows on the ground
+
+/// From dark to bright, see above.
+struct Tones {
+  Color ink;            // what the dark tends to
+  double share, inked;  // the dark: its share of the own colour's light, how much of it is ink
+  double own, white;    // at which s it is the own colour; how much white is in the brightest
+};
+constexpr Tones kPaper{{0x18, 0x1C, 0x22}, 0.55, 0.08, 0.67, 0.45};
+constexpr Tones kScreen{{0x08, 0x0C, 0x12}, 0.36, 0.10, 0.72, 0.26};
+
+Color deep(Color own, const Tones& t) {
+  const double most = std::max({own.r, own.g, own.b, std::uint8_t(1)});
+  const auto part = [&](std::uint8_t c) { return std::uint8_t(t.share * c * std::sqrt(c / most) + 0.5); };
+  return mix({part(own.r), part(own.g), part(own.b)}, t.ink, t.inked);
+}
 
 double cross(const Point& a, const Point& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -74,14 +90,11 @@ Light light(const Vec3& toward) {
 
 Shaded shade(Color own, Theme theme, const Light& light, const Vec3& normal) {
   const double sky = (1 + normal.y()) / 2, sun = std::max(0.0, normal.dot(light.toward));
+  const Tones& t = theme == Theme::paper ? kPaper : kScreen;
+  const Color low = deep(own, t), high = mix(own, {255, 255, 255}, t.white);
   const auto tone = [&](double s) {
-    s = std::clamp(s, 0.0, 1.0);
-    if (theme == Theme::paper) {
-      const Color dark = mix(own, {0x18, 0x1C, 0x22}, 0.52), bright = mix(own, {255, 255, 255}, 0.5);
-      return mix(dark, bright, s);
-    }
-    const Color dark = mix(own, {0x08, 0x0C, 0x12}, 0.72), bright = mix(own, {255, 255, 255}, 0.14);
-    return mix(dark, bright, s);
+    return s < t.own ? mix(low, own, std::max(s, 0.0) / t.own)
+                     : mix(own, high, (std::min(s, 1.0) - t.own) / (1 - t.own));
   };
   const double base = 0.15 + 0.13 * sky + 0.26 * (1 + normal.dot(light.across)) / 2;
   return {tone(base + 0.58 * sun), tone(base + 0.12 * sun)};
@@ -99,11 +112,11 @@ Shaded shine(Color own, Theme theme, const Light& light, const Vec3& normal, con
   const double sun = std::max(0.0, normal.dot(light.toward));
   const Color grey{0xA9, 0xB0, 0xB8}, white{255, 255, 255};
   const Color tint = mix(own, grey, 0.25);
-  const Color dark =
-      mix(tint, theme == Theme::paper ? Color{0x18, 0x1C, 0x22} : Color{0x08, 0x0C, 0x12}, 0.72);
+  const bool paper = theme == Theme::paper;
+  const Color dark = mix(tint, (paper ? kPaper : kScreen).ink, paper ? 0.60 : 0.72);
+  const Color pale = mix(tint, white, paper ? 0.48 : 0.3);
   const auto tone = [&](double s, double bright) {
-    return mix(mix(dark, mix(tint, white, 0.3), std::clamp(s, 0.0, 1.0)), white,
-               std::clamp(bright, 0.0, 1.0));
+    return mix(mix(dark, pale, std::clamp(s, 0.0, 1.0)), white, std::clamp(bright, 0.0, 1.0));
   };
   return {tone(sky + 0.42 * sun, 0.75 * spot), tone(sky + 0.08 * sun, 0)};
 }

@@ -105,7 +105,7 @@ std::vector<Vec3> hanging(const Vec3& a, const Vec3& b, const Vec3& down, double
 
 void add_links(SpaceFrame& s) {
   const sim::SceneInfo& cast = s.stage.cast;
-  const double weight = s.stage.layout.weight, metre = s.zoom / s.lens.scale;  // m a fitted page unit
+  const double weight = s.stage.layout.weight, metre = s.zoom / s.lens.scale;  // m a page unit at the start
   const Color color = s.stage.colours.spring;
   int number = int(s.stage.pieces.size());
   std::vector<double> least(cast.bodies.size(), 1e300);  // half the thickness of each body, m

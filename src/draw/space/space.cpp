@@ -223,7 +223,9 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
     Panel panel{cameras[i],
                 rects[i],
                 aim(cameras[i], reached.empty() ? corners : widened(reached, cast.scale), rects[i]),
+                1,
                 {}};
+    panel.shown = rects[i].width / lens_at(panel.camera, panel.aim, panel.window, 0).scale;
     if (several && !cameras[i].name.empty()) {
       const double size = kPanelName * w, inset = std::max(w * 36, 0.045 * layout.width);
       const double left = rects[i].x + (rects[i].x == 0 ? inset : 0);
@@ -235,7 +237,7 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
     panels.push_back(panel);
   }
   layout.window = rects[0];
-  layout.scale = rects[0].width / panels[0].aim.width;
+  layout.scale = rects[0].width / panels[0].shown;
 
   // springs: coils, or lines where they make a net or are many
   const auto in_net = [&](const sim::SceneInfo::Spring& spring) { return knot(spring.a) || knot(spring.b); };
@@ -285,7 +287,7 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
                        lens,
                        now,
                        picture.moving,
-                       lens.scale * panel.aim.width / panel.window.width,
+                       lens.scale * panel.shown / panel.window.width,
                        HiddenLines(lens),
                        {},
                        {},

@@ -33,6 +33,7 @@ struct Panel {
   Camera camera;
   Rect window;
   Aim aim;
+  double shown = 1;  // m: how wide it shows the world as the run begins
   std::vector<Text> words;
 };
 
@@ -109,7 +110,7 @@ struct SpaceFrame {
   const CameraProjection lens;
   const sim::Snapshot& now;
   List& list;
-  double zoom;  // page scale over the fitted one
+  double zoom;  // page scale over that at the start
   HiddenLines sight;
   Solids solids;
   std::vector<Polyhedron> placed;  // polyhedra in the world, one a piece; empty ones of other forms

@@ -168,9 +168,9 @@ float darkness(int own, vec3 p, vec3 n) {
 // the patterns of materials (shaders/material.glsl), and metal (draw/space/light.cpp)
 const MATERIALS = `
 float wood(vec3 p) {
-  float r = 2.6 * length(p.yz + vec2(0.7, 2.3)) + 0.3 * sin(0.55 * p.x + 1.1 * p.y) + 0.12 * sin(1.7 * p.x + 2.3);
+  float r = 3.1 * length(p.yz + vec2(0.4, 3.7)) + 0.16 * sin(0.31 * p.x + 0.7 * p.y) + 0.05 * sin(1.1 * p.x + 2.3);
   float t = fract(r), late = smoothstep(0.25, 0.85, t) * (1.0 - smoothstep(0.9, 1.0, t));
-  return 1.0 - 0.25 * mix(0.4, late, clamp(2.2 - 4.0 * fwidth(r), 0.0, 1.0));
+  return 1.0 - 0.17 * mix(0.4, late, clamp(2.2 - 4.0 * fwidth(r), 0.0, 1.0));
 }
 float checks(vec3 p) {
   vec3 w = max(fwidth(p), 1e-4);
@@ -182,7 +182,8 @@ vec3 shine(vec3 n, vec3 s, float sun, bool lit) {
   float sky = 0.16 + 0.5 * smoothstep(-0.35, 0.1, back.y) - 0.26 * smoothstep(0.1, 0.95, back.y);
   float spot = pow(max(dot(back, toward), 0.0), 28.0);
   vec3 tint = mix(color, vec3(169, 176, 184) / 255.0, 0.25);
-  vec3 low = mix(tint, darkest(), 0.72), high = mix(tint, vec3(1), 0.3);
+  bool screen = dark > 0.5;
+  vec3 low = mix(tint, darkest(), screen ? 0.72 : 0.6), high = mix(tint, vec3(1), screen ? 0.3 : 0.48);
   return mix(mix(low, high, clamp(sky + (lit ? 0.42 : 0.08) * sun, 0.0, 1.0)), vec3(1), lit ? 0.75 * spot : 0.0);
 }
 `;
@@ -197,8 +198,12 @@ flat in int number, material;
 out vec4 ink;
 vec3 darkest() { return (dark > 0.5 ? vec3(8, 12, 18) : vec3(24, 28, 34)) / 255.0; }
 vec3 tone(float s) {
-  vec3 low = mix(color, darkest(), dark > 0.5 ? 0.72 : 0.52);
-  return mix(low, mix(color, vec3(1), dark > 0.5 ? 0.14 : 0.5), clamp(s, 0.0, 1.0));
+  bool screen = dark > 0.5;
+  float most = max(max(color.r, color.g), max(color.b, 1.0 / 255.0)), own = screen ? 0.72 : 0.67;
+  vec3 deep = (screen ? 0.36 : 0.55) * color * sqrt(color / most);
+  vec3 low = mix(deep, darkest(), screen ? 0.1 : 0.08);
+  return s < own ? mix(low, color, max(s, 0.0) / own)
+                 : mix(color, vec3(1), (screen ? 0.26 : 0.45) * (min(s, 1.0) - own) / (1.0 - own));
 }
 ${MATERIALS}
 void main() {

@@ -16,7 +16,7 @@ const ITEMS = 300; // items: more are put in order by their middles alone
 const TOUCH = 1e-3; // of a body's size: so far two that touch may be within each other
 const SHADES = 12; // of a trail
 const SHADOWS = 60; // bodies' pieces: of more, none shades another
-const MEANS = [1, 1, 0.9, 0.78]; // of the patterns of wood and checks: shaders.js
+const MEANS = [1, 1, 0.93, 0.78]; // of the patterns of wood and checks: shaders.js
 
 /**
  * What is drawn in one go: a convex body's piece, or a line.
@@ -91,11 +91,14 @@ export class Sketch {
       base = 0.15 + (0.13 * (1 + n[1])) / 2 + (0.26 * (1 + dot(n, across))) / 2,
       s = clamp(base + (0.12 + 0.46 * reached) * sun, 0, 1),
       mean = MEANS[material] ?? 1;
-    const [down, up] = this.dark ? [0.72, 0.14] : [0.52, 0.5];
+    const [part, inked, own, white] = this.dark ? [0.36, 0.1, 0.72, 0.26] : [0.55, 0.08, 0.67, 0.45],
+      most = Math.max(color[0], color[1], color[2], 1);
     return `rgb(${color.slice(0, 3).map((/** @type {number} */ x, /** @type {number} */ k) => {
-      const low = x + down * (darkest[k] - x),
-        high = x + up * (255 - x);
-      return Math.round(mean * (low + s * (high - low)));
+      const deep = part * x * Math.sqrt(x / most),
+        low = deep + inked * (darkest[k] - deep);
+      return Math.round(
+        mean * (s < own ? low + (s / own) * (x - low) : x + ((white * (s - own)) / (1 - own)) * (255 - x)),
+      );
     })})`;
   }
 
