@@ -1,14 +1,16 @@
 # With OBSCURA_UNITY the files of a target are compiled together, at most `most` at a time: what they include and instantiate is
-# compiled once for all, which takes half the time. BY_FOLDER keeps to files of one folder. Names in unnamed namespaces are
-# therefore unique in a target, or in a folder (tests/architecture/names_test.cpp). SKIP_UNITY_BUILD_INCLUSION leaves a file out.
+# compiled once for all, which takes half the time. Files whose path matches BY_FOLDER keep to those of their folder. Names in
+# unnamed namespaces are therefore unique in a target, or in a folder (tests/architecture/names_test.cpp).
+# SKIP_UNITY_BUILD_INCLUSION leaves a file out.
 function(obscura_unity target most)
+  cmake_parse_arguments(UNITY "" "BY_FOLDER" "" ${ARGN})
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${OBSCURA_UNITY} UNITY_BUILD_MODE GROUP)
   get_target_property(sources ${target} SOURCES)
   foreach(source IN LISTS sources)
     set(folder all)
-    if(BY_FOLDER IN_LIST ARGN)
-      file(RELATIVE_PATH folder ${CMAKE_CURRENT_SOURCE_DIR} ${source})
-      get_filename_component(folder ${folder} DIRECTORY)
+    file(RELATIVE_PATH path ${CMAKE_CURRENT_SOURCE_DIR} ${source})
+    if(UNITY_BY_FOLDER AND path MATCHES "${UNITY_BY_FOLDER}")
+      get_filename_component(folder ${path} DIRECTORY)
       string(MAKE_C_IDENTIFIER ${folder} folder)
     endif()
     list(APPEND folders ${folder})

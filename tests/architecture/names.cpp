@@ -177,8 +177,11 @@ Complaints names_without_headers(const std::filesystem::path& top,
 
 Complaints clashing_names(const std::filesystem::path& top, const Paths& apart,
                           const std::vector<std::filesystem::path>& roots) {
-  // src/CMakeLists.txt: BY_FOLDER
-  static const std::set<std::string> own_names{"sim", "draw"};
+  // as src/CMakeLists.txt has them compiled: draw and the solvers by folder, else by room
+  const auto compiled_with = [](const std::filesystem::path& name) {
+    const bool own_names = *name.begin() == "draw" || name.string().starts_with("sim/solve");
+    return own_names ? name.parent_path() : *name.begin();
+  };
   std::map<std::filesystem::path, Paths> folders;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(top)) {
     const std::filesystem::path name = entry.path().lexically_relative(top);
@@ -186,7 +189,7 @@ Complaints clashing_names(const std::filesystem::path& top, const Paths& apart,
     const bool own_rules = entry.path().parent_path() != top &&
                            std::filesystem::exists(entry.path().parent_path() / "CMakeLists.txt");
     if (name.extension() == ".cpp" && !own_rules && !apart.contains(name))
-      folders[own_names.contains(name.begin()->string()) ? name.parent_path() : *name.begin()].insert(name);
+      folders[compiled_with(name)].insert(name);
   }
 
   using Places = std::map<std::string, std::vector<std::pair<std::string, Defined>>>;

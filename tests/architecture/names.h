@@ -7,8 +7,8 @@
 
 namespace obscura::architecture {
 
-/// Names in the unnamed namespace of a .cpp under `top` that another .cpp of its room (of sim and draw: of
-/// its folder) defines too, or that hide a name of a header: with OBSCURA_UNITY (src/CMakeLists.txt) these
+/// Names in the unnamed namespace of a .cpp under `top` that another .cpp of its room (of draw and
+/// sim/solve: of its folder) defines too, or that hide a name of a header: with OBSCURA_UNITY (src/CMakeLists.txt) these
 /// are compiled as one, which then does not compile, or calls the other function. The files `apart` (relative
 /// to `top`) are compiled alone; `roots` are the folders that #include "..." starts from. It reads
 /// declarations, not C++: what it does not follow (friends, function pointers, names from macros) it leaves

@@ -110,9 +110,12 @@ int counted() { return 2; }
 
 TEST_F(PlantedNames, OfTwoFoldersAreFoundWhereARoomIsCompiledAsOne) {
   const std::string a = "namespace obscura { namespace { constexpr int kOne = 1; } }\n";
-  for (const char* file : {"app/film/a.cpp", "app/study/b.cpp", "sim/force/a.cpp", "sim/math/b.cpp"})
+  for (const char* file :
+       {"app/film/a.cpp", "app/study/b.cpp", "draw/plane/a.cpp", "draw/space/b.cpp", "sim/force/a.cpp",
+        "sim/math/b.cpp", "sim/solve/cone/a.cpp", "sim/solve/exact/b.cpp"})
     plant(file, a);
-  EXPECT_THAT(clashes(), ElementsAre("app/study/b.cpp:1: kOne is in a.cpp:1 too"));
+  EXPECT_THAT(clashes(), ElementsAre("app/study/b.cpp:1: kOne is in a.cpp:1 too",
+                                     "sim/math/b.cpp:1: kOne is in a.cpp:1 too"));
 }
 
 TEST_F(PlantedNames, ThatHideAHeadersAreFound) {

@@ -24,8 +24,10 @@ TEST_P(EveryScene, CutInTwoIsTheSame) {
   const Scene scene = read(GetParam());
   const auto one = scene.run();
   const sim::Rational rate = one->rate();
+  const bool crowd = one->scene_info().bodies.size() > 200;  // half a minute for the last
   // neither on a frame nor where solvers look about themselves
   for (const std::int64_t cut : {1, 143, 331, 707}) {
+    if (crowd && cut > 331) break;
     ASSERT_TRUE(std::holds_alternative<sim::Snapshot>(one->at(sim::rational(cut) / rate)));
     const std::vector<std::uint64_t> saved = one->saved();
     const auto other = scene.run(saved);

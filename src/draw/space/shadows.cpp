@@ -127,16 +127,16 @@ void far_side(const SpaceFrame& s, const Chunk& chunk, const LightFrame& frame, 
   const sim::Snapshot::Body& at = s.now.bodies[piece.body];
   const Vec3 a = at.position + at.orientation * piece.a, b = at.position + at.orientation * piece.b;
   const double radius = piece.form == Piece::Form::ball ? chunk.reach : piece.radius;
-  constexpr int kAround = 16, kRings = 4;
+  constexpr int kSectors = 16, kRings = 4;
   const auto half = [&](const Vec3& center) {
     const auto place = [&](int ring, int k) {
-      const double polar = std::numbers::pi / 2 * ring / kRings, turn = 2 * std::numbers::pi * k / kAround;
+      const double polar = std::numbers::pi / 2 * ring / kRings, turn = 2 * std::numbers::pi * k / kSectors;
       return Vec3(center +
                   radius * (std::cos(polar) * frame.away +
                             std::sin(polar) * (std::cos(turn) * frame.u + std::sin(turn) * frame.v)));
     };
     for (int ring = 0; ring < kRings; ++ring) {
-      for (int k = 0; k < kAround; ++k) {
+      for (int k = 0; k < kSectors; ++k) {
         emit(place(ring, k), place(ring + 1, k), place(ring + 1, k + 1));
         if (ring > 0) emit(place(ring, k), place(ring + 1, k + 1), place(ring, k + 1));
       }

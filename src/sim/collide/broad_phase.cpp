@@ -16,9 +16,9 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kBands = 256;        // a power of two
-constexpr int kKinds = 4;          // of bodies: moving, still, moving points, still points
-constexpr double kFarthest = 1e9;  // bands; beyond, all share one
+constexpr int kBands = 256;         // a power of two
+constexpr int kBodyKinds = 4;       // of bodies: moving, still, moving points, still points
+constexpr double kMostBands = 1e9;  // bands; beyond, all share one
 
 // sorts as the number does, and NaN somewhere
 std::int64_t sortable(double x) {
@@ -27,8 +27,8 @@ std::int64_t sortable(double x) {
 }
 
 int band(double y) {
-  if (!(y > -kFarthest)) return -int(kFarthest);
-  const auto toward_zero = int(std::min(y, kFarthest));
+  if (!(y > -kMostBands)) return -int(kMostBands);
+  const auto toward_zero = int(std::min(y, kMostBands));
   return toward_zero - (double(toward_zero) > y);
 }
 
@@ -65,7 +65,7 @@ const std::vector<std::pair<int, int>>& BroadPhase<D>::find(std::span<const Boun
   if (std::find(still.begin(), still.end(), 0) == still.end()) return pairs_;
   sort_along_x(bounds);
   lay_bands(bounds, still, points);
-  sweep(bounds, wanted, points.empty() ? 2 : kKinds);
+  sweep(bounds, wanted, points.empty() ? 2 : kBodyKinds);
   sort_pairs(int(bounds.size()));
   return pairs_;
 }
@@ -100,16 +100,16 @@ void BroadPhase<D>::lay_bands(std::span<const Bounds<D>> bounds, std::span<const
   const double bands_per_metre = usual > 0 ? 0.5 / usual : 1;
   spans_.resize(bounds.size());
   kinds_.resize(bounds.size());
-  starts_.assign(kBands * kKinds + 1, 0);
-  lengths_.assign(kBands * kKinds, 0);
+  starts_.assign(kBands * kBodyKinds + 1, 0);
+  lengths_.assign(kBands * kBodyKinds, 0);
   for (std::size_t i = 0; i < bounds.size(); ++i) {
     const int first = band(bounds[i].lower[1] * bands_per_metre);
     const int last = std::min(band(bounds[i].upper[1] * bands_per_metre), first + kBands - 1);
     spans_[i] = {first, last};
     kinds_[i] = char((still[i] ? 1 : 0) + (!points.empty() && points[i] ? 2 : 0));
-    for (int k = first; k <= last; ++k) ++starts_[(k & (kBands - 1)) * kKinds + kinds_[i] + 1];
+    for (int k = first; k <= last; ++k) ++starts_[(k & (kBands - 1)) * kBodyKinds + kinds_[i] + 1];
   }
-  for (int k = 0; k < kBands * kKinds; ++k) starts_[k + 1] += starts_[k];
+  for (int k = 0; k < kBands * kBodyKinds; ++k) starts_[k + 1] += starts_[k];
   near_.resize(bounds.size());
   const int all = starts_.back();
   if (active_.size() < std::size_t(all)) active_.resize(all + all / 2);
@@ -128,7 +128,7 @@ void BroadPhase<D>::sweep(std::span<const Bounds<D>> bounds, const std::function
     const Span span = spans[body];
     const double left = own.lower[0], low = own.lower[1], high = own.upper[1];
     for (int k = span.first; k <= span.last; ++k) {
-      const int lists = (k & (kBands - 1)) * kKinds;
+      const int lists = (k & (kBands - 1)) * kBodyKinds;
       for (int of = 0; of < kinds; ++of) {
         // two that are still, or points, do not concern each other
         if ((of & kind) != 0) continue;

@@ -24,11 +24,11 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kAligned = 1e-6;   // of a face: corners of both that lie so close lie at one place
-constexpr double kParallel = 1e-3;  // rad: faces that can trade their corners
-constexpr double kRounding = 1e-9;  // of a face: this far beyond its end is still over it
+constexpr double kAligned = 1e-6;     // of a face: corners of both that lie so close lie at one place
+constexpr double kParallel = 1e-3;    // rad: faces that can trade their corners
+constexpr double kBeyondFace = 1e-9;  // of a face: this far beyond its end is still over it
 
-using Kind = ContactCandidate<2>::Kind;
+using CandidateKind = ContactCandidate<2>::Kind;
 
 // two outlines, part by part of two bodies
 struct Couple {
@@ -40,15 +40,15 @@ struct Couple {
   double radii() const { return of_a.radius() + of_b.radius(); }
 
   // which: numbers of the corner or face of a, and of b
-  ContactCandidate<2> gap(Kind kind, int which_a, int which_b, double core) const {
+  ContactCandidate<2> gap(CandidateKind kind, int which_a, int which_b, double core) const {
     ContactCandidate<2> made;
     made.key = {a, b,
                 pack_features({int(kind), part_a, part_b, which_a, which_b}, parts_b, digits_a, digits_b)};
     made.kind = kind;
     made.on_a = of_a.corner(which_a);
     made.on_b = of_b.corner(which_b);
-    if (kind == Kind::corner_of_a) made.normal = of_b.normal(which_b);
-    if (kind == Kind::corner_of_b) made.normal = of_a.normal(which_a);
+    if (kind == CandidateKind::corner_of_a) made.normal = of_b.normal(which_b);
+    if (kind == CandidateKind::corner_of_b) made.normal = of_a.normal(which_a);
     made.radius_a = of_a.radius();
     made.radius_b = of_b.radius();
     made.value = core - radii();
@@ -65,16 +65,16 @@ struct ReferenceFace {
   double value;  // greatest separation
 
   ContactCandidate<2> other_at_base(const Couple& couple, int corner, double core) const {
-    return base_is_b ? couple.gap(Kind::corner_of_a, corner, face, core)
-                     : couple.gap(Kind::corner_of_b, face, corner, core);
+    return base_is_b ? couple.gap(CandidateKind::corner_of_a, corner, face, core)
+                     : couple.gap(CandidateKind::corner_of_b, face, corner, core);
   }
   ContactCandidate<2> base_at_other(const Couple& couple, int corner, int partner, double core) const {
-    return base_is_b ? couple.gap(Kind::corner_of_b, partner, corner, core)
-                     : couple.gap(Kind::corner_of_a, corner, partner, core);
+    return base_is_b ? couple.gap(CandidateKind::corner_of_b, partner, corner, core)
+                     : couple.gap(CandidateKind::corner_of_a, corner, partner, core);
   }
   ContactCandidate<2> corners(const Couple& couple, int of_base, int of_other, double core) const {
-    return base_is_b ? couple.gap(Kind::corners, of_other, of_base, core)
-                     : couple.gap(Kind::corners, of_base, of_other, core);
+    return base_is_b ? couple.gap(CandidateKind::corners, of_other, of_base, core)
+                     : couple.gap(CandidateKind::corners, of_base, of_other, core);
   }
 };
 
@@ -135,7 +135,7 @@ void face_at_face(const Couple& couple, const ReferenceFace& touching, double ma
 
   const double length = t.dot(r[1] - r[0]), partner_length = partner_t.dot(i[1] - i[0]);
   const double small = std::min(length, partner_length), aligned = kAligned * small;
-  const double slack = kRounding * small;
+  const double slack = kBeyondFace * small;
   const double other_core[2] = {n.dot(i[0] - r[0]), n.dot(i[1] - r[0])};
   const double base_core[2] = {partner_n.dot(r[0] - i[0]), partner_n.dot(r[1] - i[0])};
   const double place[2] = {t.dot(i[0] - r[0]), t.dot(i[1] - r[0])};
@@ -196,7 +196,7 @@ void outline_gaps(const Couple& couple, const RelativePose& a_in_b, double margi
   if (middles.squaredNorm() > radii * radii) return;
 
   if (a.faces() + b.faces() == 0) {
-    if (couple.radii() > 0) keep(couple.gap(Kind::corners, 0, 0, middles.norm()), margin, out);
+    if (couple.radii() > 0) keep(couple.gap(CandidateKind::corners, 0, 0, middles.norm()), margin, out);
     return;
   }
   const RelativePose b_in_a = inverse(a_in_b);

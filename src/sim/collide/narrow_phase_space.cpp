@@ -35,7 +35,7 @@ constexpr double kSteep = 0.1;       // cosine: a partner that leans more is not
 constexpr double kSharp = 0.05;      // sine between edges that cross
 constexpr double kRounding = 1e-12;
 
-using Kind = ContactCandidate<3>::Kind;
+using CandidateKind = ContactCandidate<3>::Kind;
 using Flat = Vec<2>;
 
 // a list that allocates only when it is long
@@ -77,7 +77,7 @@ struct Couple {
     feature = (feature * unsigned(digits_a) + unsigned(which_a)) * unsigned(digits_b) + unsigned(which_b);
     return {a, b, int(feature & 0x7fffffffu)};
   }
-  ContactCandidate<3> named(Kind kind, int which_a, int which_b) const {
+  ContactCandidate<3> named(CandidateKind kind, int which_a, int which_b) const {
     ContactCandidate<3> made;
     made.key = key(unsigned(kind), which_a, which_b);
     made.kind = kind;
@@ -86,34 +86,34 @@ struct Couple {
     return made;
   }
   ContactCandidate<3> corner_of_a(int corner, int face, double core) const {
-    ContactCandidate<3> made = named(Kind::corner_of_a, corner, face);
+    ContactCandidate<3> made = named(CandidateKind::corner_of_a, corner, face);
     made.on_a = of_a.own_corner(corner), made.on_b = of_b.own_corner(of_b.loop(face)[0]);
     made.normal = of_b.own_normal(face);
     made.value = core - radii();
     return made;
   }
   ContactCandidate<3> corner_of_b(int face, int corner, double core) const {
-    ContactCandidate<3> made = named(Kind::corner_of_b, face, corner);
+    ContactCandidate<3> made = named(CandidateKind::corner_of_b, face, corner);
     made.on_a = of_a.own_corner(of_a.loop(face)[0]), made.on_b = of_b.own_corner(corner);
     made.normal = of_a.own_normal(face);
     made.value = core - radii();
     return made;
   }
   ContactCandidate<3> corners(int of_one, int of_other, double core) const {
-    ContactCandidate<3> made = named(Kind::corners, of_one, of_other);
+    ContactCandidate<3> made = named(CandidateKind::corners, of_one, of_other);
     made.on_a = of_a.own_corner(of_one), made.on_b = of_b.own_corner(of_other);
     made.value = core - radii();
     return made;
   }
   ContactCandidate<3> corner_at_edge_b(int corner, int edge, double core) const {
-    ContactCandidate<3> made = named(Kind::corner_at_edge_b, corner, edge);
+    ContactCandidate<3> made = named(CandidateKind::corner_at_edge_b, corner, edge);
     made.on_a = of_a.own_corner(corner), made.on_b = of_b.own_corner(of_b.edge(edge).from);
     made.edge_b = of_b.own_along(edge);
     made.value = core - radii();
     return made;
   }
   ContactCandidate<3> corner_at_edge_a(int edge, int corner, double core) const {
-    ContactCandidate<3> made = named(Kind::corner_at_edge_a, edge, corner);
+    ContactCandidate<3> made = named(CandidateKind::corner_at_edge_a, edge, corner);
     made.on_a = of_a.own_corner(of_a.edge(edge).from), made.on_b = of_b.own_corner(corner);
     made.edge_a = of_a.own_along(edge);
     made.value = core - radii();
@@ -121,7 +121,7 @@ struct Couple {
   }
   // turned: against how they run, so that their cross product leads from b to a
   ContactCandidate<3> edges(int edge_a, int edge_b, bool turned, double core) const {
-    ContactCandidate<3> made = named(Kind::edges, edge_a, edge_b);
+    ContactCandidate<3> made = named(CandidateKind::edges, edge_a, edge_b);
     if (turned) made.key = key(kTurnedEdges, edge_a, edge_b);
     made.on_a = of_a.own_corner(of_a.edge(edge_a).from), made.on_b = of_b.own_corner(of_b.edge(edge_b).from);
     made.edge_a = of_a.own_along(edge_a), made.edge_b = of_b.own_along(edge_b);
@@ -566,23 +566,23 @@ std::optional<ContactCandidate<3>> named_candidate(const ContactKey& key, const 
   const Polyhedron of_a(part(shape_a, left), own, own.x), of_b(part(shape_b, part_b), own, own.x);
   const Couple couple{key.a, key.b, of_a, of_b, left, part_b, parts_b, digits_a, digits_b};
   if (kind == kTurnedEdges) return couple.edges(which_a, which_b, true, 0);
-  switch (Kind(kind)) {
-    case Kind::corner_of_a:
+  switch (CandidateKind(kind)) {
+    case CandidateKind::corner_of_a:
       return couple.corner_of_a(which_a, which_b, 0);
-    case Kind::corner_of_b:
+    case CandidateKind::corner_of_b:
       return couple.corner_of_b(which_a, which_b, 0);
-    case Kind::corners:
+    case CandidateKind::corners:
       return couple.corners(which_a, which_b, 0);
-    case Kind::edges:
+    case CandidateKind::edges:
       return couple.edges(which_a, which_b, false, 0);
-    case Kind::corner_at_edge_b:
+    case CandidateKind::corner_at_edge_b:
       return couple.corner_at_edge_b(which_a, which_b, 0);
-    case Kind::corner_at_edge_a:
+    case CandidateKind::corner_at_edge_a:
       return couple.corner_at_edge_a(which_a, which_b, 0);
-    case Kind::corner_at_rail_b:  // these have keys of their own
-    case Kind::corner_at_rail_a:
-    case Kind::face_at_rail_b:
-    case Kind::face_at_rail_a:
+    case CandidateKind::corner_at_rail_b:  // these have keys of their own
+    case CandidateKind::corner_at_rail_a:
+    case CandidateKind::face_at_rail_b:
+    case CandidateKind::face_at_rail_a:
       break;
   }
   return {};
@@ -599,7 +599,7 @@ void collide(int a, const Shape<3>& shape, const BodyMotion<3>& at, int wall, co
       if (!(value < margin)) continue;
       ContactCandidate<3> made;
       made.key = {a, -1 - wall, i * digits_a + k};
-      made.kind = Kind::corner_of_a;
+      made.kind = CandidateKind::corner_of_a;
       made.on_a = solid.own_corner(k);
       made.on_b = half_space.point;
       made.normal = half_space.normal;

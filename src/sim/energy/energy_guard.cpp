@@ -18,9 +18,9 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kFlight = 1e-9;     // of its motion: more no body gains alone
-constexpr double kJointed = 1e-3;    // the same on joints, by the error of a step
-constexpr double kRounding = 1e-13;  // of all that is in motion or may fall
+constexpr double kFlight = 1e-9;           // of its motion: more no body gains alone
+constexpr double kJointed = 1e-3;          // the same on joints, by the error of a step
+constexpr double kEnergyRounding = 1e-13;  // of all that is in motion or may fall
 
 template <int D>
 Rotation<D> axes(const State<D>& state, int k) {
@@ -112,7 +112,7 @@ bool EnergyGuard<D>::risen(const State<D>& state) {
     springs_now_[i] = in_spring(state, i);
     sum += springs_now_[i] - springs_before_[i], motion += springs_now_[i];
   }
-  if (!(sum > kRounding * (motion + size_))) return false;
+  if (!(sum > kEnergyRounding * (motion + size_))) return false;
   islands_.reset(n);
   touched_.assign(n, 0), carried_.assign(n, 0), rooted_.assign(n, 0), granted_.assign(n, 0);
   return true;

@@ -13,7 +13,7 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kGauss = 0.21132486540518713;  // 1/2 - 1/(2 sqrt 3)
+constexpr double kGaussPoint = 0.21132486540518713;  // 1/2 - 1/(2 sqrt 3)
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void WorkBooks<D>::close(State<D>& state, double t, double h) {
     double *const x = flat_.data(), *const none = x + size, *const v = none + size, *const rates = v + size;
     const double *const x0 = x_[0].data(), *const v0 = v_[0].data(), *const x1 = state.x[0].data(),
                         *const v1 = state.v[0].data();
-    for (const double s : {kGauss, 1 - kGauss}) {
+    for (const double s : {kGaussPoint, 1 - kGaussPoint}) {
       const double r = 1 - s, a = r * r * (1 + 2 * s), b = s * s * (3 - 2 * s), c = h * s * r * r,
                    e = h * s * s * r;
       const double p = 6 * s * r / h, q = r * (1 - 3 * s), w = s * (3 * s - 2);
@@ -68,7 +68,7 @@ void WorkBooks<D>::close(State<D>& state, double t, double h) {
   motions_.resize(std::size_t(n));
   forces_.refer(state);
   double sum = 0;
-  for (const double s : {kGauss, 1 - kGauss}) {
+  for (const double s : {kGaussPoint, 1 - kGaussPoint}) {
     const double r = 1 - s;
     for (int i = 0; i < n; ++i) {
       BodyMotion<D>& at = motions_[std::size_t(i)];
@@ -97,7 +97,7 @@ double WorkBooks<D>::dragged(const State<D>& state, double h) const {
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     const Body<D>& body = model_.bodies[i];
     if (body.drag == 0 || body.fixed) continue;
-    for (const double s : {kGauss, 1 - kGauss}) {
+    for (const double s : {kGaussPoint, 1 - kGaussPoint}) {
       const double r = 1 - s;
       const Vec<D> v =
           6 * s * r / h * (state.x[i] - x_[i]) + r * (1 - 3 * s) * v_[i] + s * (3 * s - 2) * state.v[i];

@@ -25,7 +25,7 @@ namespace obscura::sim {
 namespace {
 
 constexpr int kLanes = Program::kLanes;
-constexpr double kTwoPi = 6.283185307179586;
+constexpr double kFullTurn = 6.283185307179586;
 
 template <int D>
 bool offset(const Subject<D>& subject) {
@@ -154,7 +154,7 @@ double Forces<D>::angle(const Subject<D>& subject, const BodyMotion<D>& at) cons
   } else {
     const double before = angles_.empty() ? 0 : angles_[std::size_t(subject.body)];
     const double now = elementary::atan2(at.room_from_body(1, 0), at.room_from_body(0, 0));
-    return now + kTwoPi * std::floor((before - now) / kTwoPi + 0.5) + subject.turn;
+    return now + kFullTurn * std::floor((before - now) / kFullTurn + 0.5) + subject.turn;
   }
 }
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kRounds = 16;       // over the walls one by one; then all of them at once
 constexpr double kStill = 1e-26;  // square of the part of a speed that is its rounding
-constexpr double kTogether =
+constexpr double kMetTogether =
     1e-9;  // of a body's bounding radius: points this near the wall touch in the same instant
 constexpr double kOutside = 1e-13;  // of the room's height: a depth that is rounding
 
@@ -226,7 +226,7 @@ bool Handout<D>::meet(Striker& s, int wall) {
 
   met_.clear();
   for (int i = 0; i < int(s.tips.size()); ++i) {
-    if (striking_[i] && std::fabs(distances_[i] + depth) <= kTogether * span) met_.push_back(i);
+    if (striking_[i] && std::fabs(distances_[i] + depth) <= kMetTogether * span) met_.push_back(i);
   }
   // if a face has more vertices than are solved together, take every second one, or third, ...
   const int stride = (int(met_.size()) + kMostRows - 1) / kMostRows;
@@ -244,7 +244,7 @@ bool Handout<D>::meet(Striker& s, int wall) {
 template <int D>
 void Handout<D>::meet_all(Striker& s) {
   const double span = bounding_radius_[s.body - model_.bodies.data()];
-  const double near = std::max(kTogether * span, kOutside * model_.scale);
+  const double near = std::max(kMetTogether * span, kOutside * model_.scale);
   PointAtWall rows[kMostRows];
   int n = 0;
   for (int wall = 0; wall < int(model_.walls.size()); ++wall) {

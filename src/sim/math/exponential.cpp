@@ -49,7 +49,7 @@ double inverse_coefficient(double theta2) {
 
 // the angle whose sine and cosine are s and c, s >= 0: a first guess within 0.005, bettered twice by the
 // small angle between
-double angle_of(double s, double c) {
+double half_angle(double s, double c) {
   const double r = s < std::fabs(c) ? s / std::fabs(c) : std::fabs(c) / s;
   const double first = r * (0.785398163397448 + 0.273 * (1 - r));
   const double acute = s < std::fabs(c) ? first : 1.5707963267948966 - first;
@@ -84,7 +84,7 @@ Vec3 logarithm(const Eigen::Vector4d& q) {
   const Vec3 axis = sign * q.head<3>();
   const double s = axis.norm();
   if (s == 0) return Vec3::Zero();
-  return axis * (2 * angle_of(s, sign * q[3]) / s);
+  return axis * (2 * half_angle(s, sign * q[3]) / s);
 }
 
 Eigen::Vector4d turned(const Eigen::Vector4d& q, const Vec3& by) {

@@ -12,9 +12,9 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kDependent = 1e-11;  // a pivot this small beside its diagonal is rounding
-constexpr double kSlack = 1e-12;      // of the largest term that went into a sum
-constexpr double kLoosest = 1e-5;     // where rows all but depend on one another, their p is no better known
+constexpr double kDependentPivot = 1e-11;  // a pivot this small beside its diagonal is rounding
+constexpr double kSlack = 1e-12;           // of the largest term that went into a sum
+constexpr double kLoosest = 1e-5;  // where rows all but depend on one another, their p is no better known
 
 struct Active {
   int rows[kMostRows];
@@ -37,7 +37,7 @@ bool balance(const Square& A, const SmallVector& b, const Active& active, SmallV
     // bit
     const double a00 = A(r[0], r[0]), a11 = A(r[1], r[1]), a01 = A(r[0], r[1]);
     const double det = a00 * a11 - a01 * a01;
-    if (!(det > kDependent * a00 * a11)) return false;
+    if (!(det > kDependentPivot * a00 * a11)) return false;
     p[r[0]] = (b[r[1]] * a01 - b[r[0]] * a11) / det;
     p[r[1]] = (b[r[0]] * a01 - b[r[1]] * a00) / det;
     return true;
@@ -48,7 +48,7 @@ bool balance(const Square& A, const SmallVector& b, const Active& active, SmallV
     m[i][k] = -b[r[i]];
   }
   for (int i = 0; i < k; ++i) {
-    if (!(m[i][i] > kDependent * A(r[i], r[i]))) return false;
+    if (!(m[i][i] > kDependentPivot * A(r[i], r[i]))) return false;
     for (int j = i + 1; j < k; ++j) {
       const double f = m[j][i] / m[i][i];
       for (int c = i; c <= k; ++c) m[j][c] -= f * m[i][c];
@@ -104,7 +104,7 @@ void spread(const Square& A, const SmallVector& b, SmallVector& p) {
     right[i] = -b[active.rows[i]];
   }
   Eigen::CompleteOrthogonalDecomposition<Square> factors(k, k);
-  factors.setThreshold(kDependent);
+  factors.setThreshold(kDependentPivot);
   factors.compute(part);
   if (factors.rank() == k) return;
   const SmallVector least = factors.solve(right);

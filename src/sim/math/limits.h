@@ -30,4 +30,7 @@ inline constexpr double kFarthest = 1e6;
 /// (sim/math/lie_step.h).
 inline constexpr double kFarthestTurn = 100;
 
+/// How far above the ground a body still stands on it, in heights of the room.
+inline constexpr double kOnGround = 1e-6;
+
 }  // namespace obscura::sim

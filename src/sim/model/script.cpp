@@ -6,7 +6,7 @@ namespace obscura::sim {
 
 namespace {
 
-__extension__ typedef __int128 Wide;
+__extension__ typedef __int128 Int128;
 
 constexpr double kSame = 1e-9;  // of a step
 
@@ -19,8 +19,8 @@ TimeStamp snapped(TimeStamp at) {
 }  // namespace
 
 TimeStamp time_stamp(Rational t, Rational rate) {
-  const Wide num = Wide(t.num) * rate.num, den = Wide(t.den) * rate.den;
-  Wide whole = num / den, rest = num % den;
+  const Int128 num = Int128(t.num) * rate.num, den = Int128(t.den) * rate.den;
+  Int128 whole = num / den, rest = num % den;
   if (rest < 0) rest += den, --whole;
   const double fraction = double(rest) / double(den);
   // a rest short of a step by less than rounding

@@ -11,17 +11,12 @@
 #include "sim/constraint/joints/joint.h"
 #include "sim/math/elementary.h"
 #include "sim/math/lie_step.h"
+#include "sim/math/limits.h"
 #include "sim/model/body_spin.h"
 #include "sim/motion/free_motion.h"
 #include "sim/motion/stability.h"
 
 namespace obscura::sim {
-
-namespace {
-
-constexpr double kOnGround = 1e-6;  // of the room's height: what is nearer stands on it
-
-}  // namespace
 
 template <int D>
 ForwardDynamics<D>::ForwardDynamics(const Model<D>& model, const std::vector<Path<D>>& paths)

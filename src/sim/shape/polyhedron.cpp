@@ -17,7 +17,7 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kSkew = 1e-6;  // sine between two edges: below, they have no common normal
+constexpr double kParallelEdges = 1e-6;  // sine between two edges: below, they have no common normal
 
 // corners of a box count by the axes on whose positive side they lie; face 2 k + 1 is the positive one of
 // axis k; edge 4 k + i + 2 j runs along k on the sides i and j of the next two axes
@@ -258,7 +258,7 @@ EdgeAxis of_boxes(const Polyhedron& a, const Polyhedron& b, double enough) {
     for (int j = 0; j < 3; ++j) {
       Vec<3> n = a.axes().col(i).cross(b.axes().col(j));
       const double sine = std::sqrt(n.squaredNorm());
-      if (sine < kSkew) continue;
+      if (sine < kParallelEdges) continue;
       n /= away.dot(n) < 0 ? -sine : sine;
       const Vec<3> over_a = a.arms().transpose() * n, over_b = b.arms().transpose() * n;
       double value = away.dot(n);
@@ -314,7 +314,7 @@ EdgeAxis greatest_edge_separation(const Polyhedron& a, const Polyhedron& b, doub
       const Wedge of_b(b, j);
       Vec<3> n = of_a.along.cross(of_b.along);
       const double sine = std::sqrt(n.squaredNorm());
-      if (sine < kSkew) continue;
+      if (sine < kParallelEdges) continue;
       n /= sine;
       const double ways[4] = {n.dot(of_a.left), n.dot(of_a.right), -n.dot(of_b.left), -n.dot(of_b.right)};
       const bool up = *std::min_element(ways, ways + 4) >= -kLevel;

@@ -47,7 +47,7 @@ constexpr Entry kEntries[] = {
      {make<PlaneIterative>, make<SpaceIterative>}},
 };
 
-constexpr auto kKinds = [] {
+constexpr auto kSolverKinds = [] {
   std::array<SolverKind, std::size(kEntries)> all{};
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = kEntries[i].its;
   return all;
@@ -55,9 +55,9 @@ constexpr auto kKinds = [] {
 
 static_assert(
     [] {
-      for (std::size_t i = 0; i < kKinds.size(); ++i)
-        if (kKinds[i].kind != Solver(i + 1)) return false;
-      return kKinds.size() + 1 == std::size_t(Solver::count);
+      for (std::size_t i = 0; i < kSolverKinds.size(); ++i)
+        if (kSolverKinds[i].kind != Solver(i + 1)) return false;
+      return kSolverKinds.size() + 1 == std::size_t(Solver::count);
     }(),
     "each solver has a row, in the order of Solver");
 
@@ -65,9 +65,9 @@ constexpr std::size_t place(Solver solver) { return std::size_t(solver) - 1; }
 
 }  // namespace
 
-std::span<const SolverKind> solver_kinds() { return kKinds; }
+std::span<const SolverKind> solver_kinds() { return kSolverKinds; }
 
-const SolverKind& solver_kind(Solver solver) { return kKinds[place(solver)]; }
+const SolverKind& solver_kind(Solver solver) { return kSolverKinds[place(solver)]; }
 
 template <int D>
 BodyCounts body_counts(const Model<D>& model) {

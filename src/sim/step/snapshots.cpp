@@ -12,6 +12,7 @@
 #include "sim/force/explosion.h"
 #include "sim/force/forces.h"
 #include "sim/force/spring.h"
+#include "sim/math/limits.h"
 #include "sim/model/body_motion.h"
 #include "sim/shape/shape.h"
 
@@ -23,8 +24,6 @@ constexpr double kPathRate = 60;  // places a second of a mouse's way
 constexpr int kPathMost = 600;
 
 constexpr double kFineCurve = 1e-5;  // of a track: how far its line may be from it
-
-constexpr double kOnGround = 1e-6;  // of the room's height: what is nearer stands on it
 
 // of a spin, a torque: in the plane (0, 0, w)
 template <int D>
