@@ -43,7 +43,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
 template <int D>
 bool Iterative<D>::collide(StepPart<D> step) {
   State<D>& state = step.state;
-  corrected_ = false;
+  corrected_ = false, closing_rate_ = 0;
   state.frozen.resize(model_.bodies.size()), state.quiet.resize(model_.bodies.size());
   joints_.prepare(state), joints_.clear_pushed();
   if (state.step == 0) joints_.project_initial_velocities(state);
@@ -53,6 +53,7 @@ bool Iterative<D>::collide(StepPart<D> step) {
 template <int D>
 void Iterative<D>::wake(StepPart<D> step) {
   update_sleep(step);
+  foresee_speeds(step);
   closing_rate_ = closing_rate(step.h);
   substeps_ = substeps_for(closing_rate_, step.h);
   notes_.begin(step.state);
@@ -137,6 +138,17 @@ bool Iterative<D>::wake_near_driven(StepPart<D> step, double span) {
     const int i = drives_.number(body);
     return i < 0 ? 0 : drives_.travel(i, step.t, span);
   });
+}
+
+// how much faster kinematic bodies become within the step than they are now
+template <int D>
+void Iterative<D>::foresee_speeds(StepPart<D> step) {
+  if (drives_.any()) quicker_.assign(model_.bodies.size(), 0);
+  for (int i = 0; i < drives_.size(); ++i) {
+    const auto body = std::size_t(drives_.body(i));
+    quicker_[body] = drives_.fastest(i, step.t, step.h)
+                         .beyond(drives_.at(i, step.t).at, bounding_radius<D>(model_.bodies[body].shape));
+  }
 }
 
 template <int D>

@@ -108,6 +108,7 @@ class Iterative : public ContactSolver<D> {
     return at_start(state) ? 1 : sim::corrected_share(time);
   }
   bool wake_near_driven(StepPart<D> step, double span);
+  void foresee_speeds(StepPart<D> step);
   void begin_corrections();
   /// To the joint solver: its bodies where the substep begins; the velocities of all its bodies, or of those
   /// marked; and these back.
@@ -122,13 +123,14 @@ class Iterative : public ContactSolver<D> {
   Drives<D> drives_;
   Sleep<D> sleep_;
   Stages stages_;
-  std::vector<char> carries_;  // one a body: kinematic or with a belt; empty: there are none
+  std::vector<char> carries_;    // one a body: kinematic or with a belt; empty: there are none
+  std::vector<double> quicker_;  // one a body, m/s: how much faster the step moves it; empty: none are moved
   double g_ = 0;
   double restitution_threshold_ = 0;  // m/s: slower approaches do not bounce
   AllowedOverlap allowed_overlap_;
   std::int64_t every_ = 1;             // steps between two pair searches
   int substeps_ = 1;                   // of this step
-  double closing_rate_ = 0;            // at the start of the step
+  double closing_rate_ = 0;            // at the start of the step; 0: not known yet
   std::vector<MovingBody<D>> moving_;  // one a body, and one more that never moves, for walls
   std::vector<Vec<D>> corrections_;    // how far this step has pushed each body out of others, m
   bool corrected_ = false;

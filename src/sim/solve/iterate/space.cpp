@@ -67,6 +67,8 @@ double SpaceIterative::closing_rate(double h) const {
       }
       closes = std::max(closes, kPassing * passes);
     }
+    // what is moved, as fast as it becomes within the step
+    if (!quicker_.empty()) closes += quicker_[touch.a] + (touch.b < n ? quicker_[touch.b] : 0);
     if ((touch.gap - h * closes) * touch.per_width < kNearly) most = std::max(most, closes * touch.per_width);
   }
   return most;
@@ -146,15 +148,29 @@ void SpaceIterative::prepare(const State<D>& state, double t, double h) {
     response_.set(i, !inactive_[i]);
     if (!inactive_[i]) moving_[i] = PointBody<D>(body, stances_[i]);
   }
+  std::fill(farther_.begin(), farther_.end(), 0);
   for (int i = 0; i < drives_.size(); ++i) {
     const int body = drives_.body(i);
     moving_[body].v = stances_[body].v, moving_[body].w = stances_[body].w;
-    const DrivenMotion<D> then = drives_.at(i, t + h);
-    const AngularVec<D> gain = then.at.w - stances_[body].w;
+    const AngularVec<D> gain = drives_.at(i, t + h).at.w - stances_[body].w;
+    const double turns = std::max(std::sqrt(gain.squaredNorm()),
+                                  drives_.fastest(i, t, h).spin - std::sqrt(stances_[body].w.squaredNorm()));
     farther_[body] = std::max(0.0, drives_.travel(i, t, h) - h * std::sqrt(stances_[body].v.squaredNorm())) +
-                     h * bounding_radius_[body] * std::sqrt(gain.squaredNorm());
+                     h * bounding_radius_[body] * turns;
+    if (!too_fast()) continue;
+    // at most twice as fast as the matter that strikes it, and then against what lies beside it
+    const double passes =
+        swiftness(body) + (std::sqrt(gain.squaredNorm()) + turns) * bounding_radius_[body];
+    for (int other = 0; other < n; ++other) {
+      const double near = bounding_radius_[body] + bounding_radius_[other] + h * passes;
+      if (inactive_[other] || (stances_[other].x - stances_[body].x).squaredNorm() > near * near) continue;
+      farther_[other] = std::max(farther_[other], 2 * h * passes);
+    }
   }
 }
+
+// whether bodies come farther in a substep than pairs are to approach in one, however many the step has
+bool SpaceIterative::too_fast() const { return closing_rate_ > kCloser * kMostSubsteps; }
 
 // of the fastest point, at most
 double SpaceIterative::swiftness(int body) const {
@@ -165,7 +181,9 @@ double SpaceIterative::swiftness(int body) const {
 // how far a body may come in a step, m
 double SpaceIterative::margin(int body, double h) const {
   if (drives_.number(body) >= 0) return h * swiftness(body) + farther_[body] + 1e-3 * bounding_radius_[body];
-  return inactive_[body] ? 0 : h * (1.5 * swiftness(body) + 2 * g_ * h) + 1e-3 * bounding_radius_[body];
+  if (inactive_[body]) return 0;
+  const double struck = farther_.empty() ? 0 : farther_[body];
+  return h * (1.5 * swiftness(body) + 2 * g_ * h) + struck + 1e-3 * bounding_radius_[body];
 }
 
 // how fast points of one body pass those of another, at most
@@ -191,7 +209,7 @@ void SpaceIterative::find(StepPart<D> step) {
   bounds_.resize(n), margin_.resize(n), swing_.resize(n), touches_.clear();
   known_.swap(features_), features_.clear();
   // the first substep begins where the step does: of what has been found for the step, what is near enough
-  const bool same = number == 0 && step.h < found_for_ && inactive_ == inactive_then_;
+  const bool same = number == 0 && step.h < found_for_ && inactive_ == inactive_then_ && !too_fast();
   found_for_ = step.h;
   for (int i = 0; i < n; ++i) {
     bounds_[i] = bounds(model_.bodies[i].shape, stances_[i]);

@@ -97,6 +97,7 @@ class SpaceIterative final : public Iterative<3> {
   };
 
   void prepare(const State<D>& state, double t, double h);
+  bool too_fast() const;
   void find(StepPart<D> step);
   void find_near();
   bool stays_apart(const Apart& apart, int a, int b, double margin) const;
@@ -175,7 +176,9 @@ class SpaceIterative final : public Iterative<3> {
   Response<D> response_;
   std::vector<Contact<D>> near_;
   EnergyGuard<D> energy_guard_;
-  std::vector<double> farther_;  // kinematic bodies: how far they get from where their velocity takes them, m
+  // bodies, m: how far kinematic ones get from where their velocity takes them, and others where these
+  // strike them; empty: none are kinematic
+  std::vector<double> farther_;
   std::vector<double> bounding_radius_, width_;  // of bodies, m
   std::vector<char> round_;
   std::vector<Contact<D>> impulses_;  // of the substeps before
