@@ -32,6 +32,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
       allowed_overlap_(sim::allowed_overlap(model)),
       every_(std::max<std::int64_t>(1, std::llround(value(model.rate) / kPairSearches))),
       moving_(model.bodies.size() + 1) {
+  for (const Body<D>& body : model.bodies) bounding_radius_.push_back(bounding_radius(body.shape));
   const double h = 1 / value(model.rate);
   substeps_ = substeps_for(0, h);
   restitution_threshold_ = 2 * h / substeps_ * g_ + 1e-9 * model.scale;
@@ -112,15 +113,6 @@ void Iterative<D>::project(StepPart<D> part) {
   if (notes_.any()) note_touches(part);
 }
 
-template <int D>
-void Iterative<D>::sleep(StepPart<D> step) {
-  if (!sleep_.due(step.state)) return;
-  const std::span<typename Sleep<D>::Island> islands = sleep_.candidates(step.state);
-  if (islands.empty()) return;
-  find_equilibrium(islands, step.state, step.h / substeps_);
-  if (sleep_.put_to_sleep(step.state)) stop_sleeping(step.state);
-}
-
 // which watched pairs bear or are struck in a substep
 template <int D>
 void Iterative<D>::note_touches(StepPart<D> part) {
@@ -146,8 +138,8 @@ void Iterative<D>::foresee_speeds(StepPart<D> step) {
   if (drives_.any()) quicker_.assign(model_.bodies.size(), 0);
   for (int i = 0; i < drives_.size(); ++i) {
     const auto body = std::size_t(drives_.body(i));
-    quicker_[body] = drives_.fastest(i, step.t, step.h)
-                         .beyond(drives_.at(i, step.t).at, bounding_radius<D>(model_.bodies[body].shape));
+    quicker_[body] =
+        drives_.fastest(i, step.t, step.h).beyond(drives_.at(i, step.t).at, bounding_radius_[body]);
   }
 }
 
@@ -163,19 +155,19 @@ void Iterative<D>::poses_to_joints() {
 }
 
 template <int D>
-void Iterative<D>::velocities_to_joints(const std::vector<char>* of) {
-  for (const int i : joints_.bodies()) {
-    if (of && !(*of)[std::size_t(i)]) continue;
+void Iterative<D>::velocities_to_joints(std::span<const int> of) {
+  for (const int i : of) {
+    if (!joints_.has(i)) continue;
     const MovingBody<D>& m = moving_[std::size_t(i)];
     joints_.body_motion(i).v = velocity(m), joints_.body_motion(i).w = spin(m);
   }
 }
 
 template <int D>
-void Iterative<D>::velocities_from_joints(const std::vector<char>* of) {
-  for (const int i : joints_.bodies()) {
-    if (of && !(*of)[std::size_t(i)]) continue;
-    set_velocity(moving_[std::size_t(i)], joints_.body_motion(i).v, joints_.body_motion(i).w);
+void Iterative<D>::velocities_from_joints(std::span<const int> of) {
+  for (const int i : of) {
+    if (joints_.has(i))
+      set_velocity(moving_[std::size_t(i)], joints_.body_motion(i).v, joints_.body_motion(i).w);
   }
 }
 

@@ -43,7 +43,6 @@ PlaneIterative::PlaneIterative(const Model<D>& model, const std::vector<Path<D>>
       cores_(model),
       pairs_(model, cores_),
       impacts_(cores_, pairs_),
-      equilibrium_(model, cores_),
       driven_(std::size_t(drives_.size())) {
   const int n = int(model.bodies.size());
   span_ = double(every_) * (1 / value(model.rate));
@@ -141,10 +140,6 @@ void PlaneIterative::place_contacts(State<D>& state, bool all) const {
       contact.point = {at.x, at.y}, contact.normal = {at.nx, at.ny}, contact.gap = at.gap;
     }
   }
-}
-
-void PlaneIterative::find_equilibrium(std::span<Sleep<D>::Island> islands, State<D>& state, double h) {
-  equilibrium_.find(islands, sleep_, state, {pairs_.all(), batches_, joints_, poses_}, h);
 }
 
 // zeroes the velocities of bodies that have just fallen asleep

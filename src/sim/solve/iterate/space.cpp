@@ -39,7 +39,6 @@ SpaceIterative::SpaceIterative(const Model<D>& model, const std::vector<Path<D>>
   for (const Body<D>& body : model.bodies) {
     width_.push_back(std::max(2 * half_thickness(body.shape), kPointWidth * model.scale));
     round_.push_back(bool(round_radius(body.shape)));
-    bounding_radius_.push_back(bounding_radius(body.shape));
     points_.push_back(is_point(body.shape));
   }
   farther_.resize(carries_.size());
@@ -51,6 +50,18 @@ bool SpaceIterative::find_contacts(StepPart<D> step) {
   found_for_ = 0;
   find(step);
   return true;
+}
+
+void SpaceIterative::update_sleep(StepPart<D> step) {
+  State<D>& state = step.state;
+  bool changed = wake_near_driven(step, step.h);
+  if (state.step == 0 || sleep_.any(state)) {
+    near_.clear();
+    for (const ContactConstraint& touch : touches_) near_.push_back(contact(touch, step.h));
+    changed = sleep_.wake(state, near_, step.h, step.h) || changed;
+    if (!changed && state.step == 0 && sleep_.at_start(state, near_)) state.contacts = near_, changed = true;
+  }
+  if (changed) prepare(state, step.t, step.h), find(step);
 }
 
 // how fast those close that touch, or may within h s: the most, in widths of the narrower body, 1/s
@@ -159,8 +170,7 @@ void SpaceIterative::prepare(const State<D>& state, double t, double h) {
                      h * bounding_radius_[body] * turns;
     if (!too_fast()) continue;
     // at most twice as fast as the matter that strikes it, and then against what lies beside it
-    const double passes =
-        swiftness(body) + (std::sqrt(gain.squaredNorm()) + turns) * bounding_radius_[body];
+    const double passes = swiftness(body) + (std::sqrt(gain.squaredNorm()) + turns) * bounding_radius_[body];
     for (int other = 0; other < n; ++other) {
       const double near = bounding_radius_[body] + bounding_radius_[other] + h * passes;
       if (inactive_[other] || (stances_[other].x - stances_[body].x).squaredNorm() > near * near) continue;
@@ -171,12 +181,6 @@ void SpaceIterative::prepare(const State<D>& state, double t, double h) {
 
 // whether bodies come farther in a substep than pairs are to approach in one, however many the step has
 bool SpaceIterative::too_fast() const { return closing_rate_ > kCloser * kMostSubsteps; }
-
-// of the fastest point, at most
-double SpaceIterative::swiftness(int body) const {
-  const PointBody<D>& m = moving_[body];
-  return std::sqrt(m.v.squaredNorm()) + bounding_radius_[body] * std::sqrt(m.w.squaredNorm());
-}
 
 // how far a body may come in a step, m
 double SpaceIterative::margin(int body, double h) const {
@@ -659,6 +663,23 @@ void SpaceIterative::report_contacts(State<D>& state, double h) const {
   for (const ContactConstraint& touch : touches_) state.contacts.push_back(contact(touch, h));
   std::inplace_merge(state.contacts.begin(), state.contacts.begin() + std::ptrdiff_t(kept),
                      state.contacts.end(), [](const auto& p, const auto& q) { return p.key < q.key; });
+}
+
+// a contact as the state keeps it
+Contact<3> SpaceIterative::contact(const ContactConstraint& touch, double h) const {
+  Contact<D> it;
+  it.key = touch.key, it.point = touch.point, it.normal = touch.n, it.gap = touch.gap;
+  const Vec<D> impulse = touch.normal_impulse * touch.n + touch.tangent_impulse;
+  it.force = impulse / h;
+  if (touch.bounces && touch.least > 0) it.impulse = impulse;
+  it.impulse += touch.impact_impulse;
+  it.touching =
+      touch.normal_impulse <= 0 ? ContactMode::open
+      : std::sqrt(touch.tangent_impulse.squaredNorm()) < touch.mu * touch.normal_impulse * (1 - 1e-9)
+          ? ContactMode::stick
+          : ContactMode::slide;
+  if (it.touching == ContactMode::open && !touch.impact_impulse.isZero(0)) it.touching = ContactMode::slide;
+  return it;
 }
 
 }  // namespace obscura::sim
