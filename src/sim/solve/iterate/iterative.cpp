@@ -132,6 +132,15 @@ bool Iterative<D>::wake_near_driven(StepPart<D> step, double span) {
   });
 }
 
+template <int D>
+double Iterative<D>::farther(int i, double t, double h) {
+  const BodyMotion<D> now = drives_.at(i, t).at, then = drives_.at(i, t + h).at;
+  const double turns = std::max(std::sqrt((then.w - now.w).squaredNorm()),
+                                drives_.fastest(i, t, h).spin - std::sqrt(now.w.squaredNorm()));
+  return std::max(0.0, drives_.travel(i, t, h) - h * std::sqrt(now.v.squaredNorm())) +
+         h * bounding_radius_[std::size_t(drives_.body(i))] * turns;
+}
+
 // how much faster kinematic bodies become within the step than they are now
 template <int D>
 void Iterative<D>::foresee_speeds(StepPart<D> step) {

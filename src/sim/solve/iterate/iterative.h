@@ -120,6 +120,8 @@ class Iterative : public ContactSolver<D> {
            bounding_radius_[std::size_t(body)] * std::sqrt(spin(m).squaredNorm());
   }
   bool wake_near_driven(StepPart<D> step, double span);
+  /// How far the i-th kinematic body may be, within h s from t, from where its velocity at t takes it, m.
+  double farther(int i, double t, double h);
   void foresee_speeds(StepPart<D> step);
   void begin_corrections();
   /// To the joint solver: its bodies where the substep begins; velocities, of bodies on joints among these;

@@ -525,15 +525,7 @@ void PlaneIterative::share_free_motion(StepPart<D> part) {
 
 // tells the pair search how far they may be from where their velocities at t take them
 void PlaneIterative::foresee_driven(double t) {
-  for (int i = 0; i < drives_.size(); ++i) {
-    const int body = drives_.body(i);
-    const DrivenMotion<D> now = drives_.at(i, t);
-    const double speed = std::sqrt(now.at.v.squaredNorm()),
-                 turns = span_ * (drives_.fastest(i, t, span_).spin - std::fabs(now.at.w[0]));
-    const double farther = std::max(0.0, drives_.travel(i, t, span_) - span_ * speed) +
-                           std::max(0.0, turns) * cores_.bounding_radius[body];
-    pairs_.foresee(body, farther);
-  }
+  for (int i = 0; i < drives_.size(); ++i) pairs_.foresee(drives_.body(i), farther(i, t, span_));
 }
 
 // their velocities and displacements in the substep, from their motion

@@ -163,14 +163,10 @@ void SpaceIterative::prepare(const State<D>& state, double t, double h) {
   for (int i = 0; i < drives_.size(); ++i) {
     const int body = drives_.body(i);
     moving_[body].v = stances_[body].v, moving_[body].w = stances_[body].w;
-    const AngularVec<D> gain = drives_.at(i, t + h).at.w - stances_[body].w;
-    const double turns = std::max(std::sqrt(gain.squaredNorm()),
-                                  drives_.fastest(i, t, h).spin - std::sqrt(stances_[body].w.squaredNorm()));
-    farther_[body] = std::max(0.0, drives_.travel(i, t, h) - h * std::sqrt(stances_[body].v.squaredNorm())) +
-                     h * bounding_radius_[body] * turns;
+    farther_[body] = farther(i, t, h);
     if (!too_fast()) continue;
     // at most twice as fast as the matter that strikes it, and then against what lies beside it
-    const double passes = swiftness(body) + (std::sqrt(gain.squaredNorm()) + turns) * bounding_radius_[body];
+    const double passes = swiftness(body) + farther_[body] / h;
     for (int other = 0; other < n; ++other) {
       const double near = bounding_radius_[body] + bounding_radius_[other] + h * passes;
       if (inactive_[other] || (stances_[other].x - stances_[body].x).squaredNorm() > near * near) continue;
