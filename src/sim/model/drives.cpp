@@ -97,6 +97,17 @@ double Drives<D>::travel(int i, double t, double h) {
 }
 
 template <int D>
+Drives<D>::Pace Drives<D>::fastest(int i, double t, double h) {
+  Pace most;
+  for (int k = 0; k <= kTravelSamples; ++k) {
+    const BodyMotion<D> then = at(i, k < kTravelSamples ? t + h * k / kTravelSamples : t + h).at;
+    most.speed = std::max(most.speed, std::sqrt(then.v.squaredNorm()));
+    most.spin = std::max(most.spin, std::sqrt(then.w.squaredNorm()));
+  }
+  return most;
+}
+
+template <int D>
 void Drives<D>::put(State<D>& state, double t) {
   for (int i = 0; i < size(); ++i) {
     const DrivenMotion<D> now = at(i, t);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <variant>
@@ -41,6 +43,19 @@ class Drives {
   /// The largest distance (m) of the i-th body's centre, between t and t + h, from its place at t. A maximum
   /// of samples: the true one may be a little larger.
   double travel(int i, double t, double h);
+
+  /// The largest speed of the i-th body's centre (m/s) and its largest spin (rad/s) between t and t + h:
+  /// maxima of samples as above, with those of both ends.
+  struct Pace {
+    double speed = 0, spin = 0;
+
+    /// How much faster than `now` a point within `reach` m of the centre may become, m/s.
+    double beyond(const BodyMotion<D>& now, double reach) const {
+      return std::max(0.0, speed - std::sqrt(now.v.squaredNorm())) +
+             reach * std::max(0.0, spin - std::sqrt(now.w.squaredNorm()));
+    }
+  };
+  Pace fastest(int i, double t, double h);
 
   /// Places and velocities of all at time t into a state.
   void put(State<D>& state, double t);

@@ -105,11 +105,8 @@ BodyMotion<D> ExactSolver<D>::pose_at(const State<D>& state, int body, double h,
 template <int D>
 double ExactSolver<D>::travel(const State<D>& state, int body, double h) const {
   if (const int drive = drives_.number(body); drive >= 0) {
-    const BodyMotion<D>&from = interval_.driven[std::size_t(drive)].at, &to = driven_[std::size_t(drive)].at;
-    const double fast = std::sqrt(std::max(from.v.squaredNorm(), to.v.squaredNorm()));
-    const double turns = std::sqrt(std::max(from.w.squaredNorm(), to.w.squaredNorm()));
-    return std::max(std::sqrt((to.x - from.x).squaredNorm()), h * fast) +
-           limits_.bounding_radius[body] * std::min(2.0, h * turns);
+    const auto& [fast, turns] = interval_.paces[std::size_t(drive)];
+    return h * fast + limits_.bounding_radius[body] * std::min(2.0, h * turns);
   }
   if (!response_.moves(body)) return 0;
   double sum = std::sqrt((state.x[body] - interval_.begun.x[body]).squaredNorm());
@@ -323,6 +320,9 @@ double ExactSolver<D>::breaking_time(const State<D>& state, Couple& which) const
 // kNever: nothing does
 template <int D>
 double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& which, bool& passes) {
+  // what is moved may go there and back
+  interval_.paces.clear();
+  for (int i = 0; i < drives_.size(); ++i) interval_.paces.push_back(drives_.fastest(i, interval_.t, h));
   // contacts that slide, by their rows at the end
   update_poses(state), pose_driven(interval_.t + h);
   rows_.clear();
@@ -499,7 +499,7 @@ void ExactSolver<D>::begin_again(State<D>& state, double t) {
 template <int D>
 double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, bool& cut) {
   save(state, interval_.begun);
-  interval_.t = t, interval_.driven = driven_;
+  interval_.t = t;
   interval_.velocities.resize(Eigen::Index(rows_.size()));
   for (int i = 0; i < int(rows_.size()); ++i) interval_.velocities[i] = row_velocity(i);
   interval_.aims.clear();

@@ -157,16 +157,16 @@ class ExactSolver final : public ContactSolver<D>, private System {
 
   // the present interval, from one event to the next
   struct Interval {
-    Motion begun;                         // where it began
-    double t = 0;                         // s, when
-    double given = 0;                     // by bodies that are moved within it, J
-    std::vector<DrivenMotion<D>> driven;  // those when it began
-    Eigen::VectorXd velocities;           // J v there
-    std::vector<double> aims;             // of motors there, one a constraint
-    Eigen::VectorXd forces;               // f there
-    std::vector<ConeMode<D>> modes;       // as its stages keep them
-    double slight = 0;                    // N: smaller normal forces count as none
-    double loads = 0;                     // N: loads() there
+    Motion begun;                                 // where it began
+    double t = 0;                                 // s, when
+    double given = 0;                             // by bodies that are moved within it, J
+    std::vector<typename Drives<D>::Pace> paces;  // those' fastest within it
+    Eigen::VectorXd velocities;                   // J v there
+    std::vector<double> aims;                     // of motors there, one a constraint
+    Eigen::VectorXd forces;                       // f there
+    std::vector<ConeMode<D>> modes;               // as its stages keep them
+    double slight = 0;                            // N: smaller normal forces count as none
+    double loads = 0;                             // N: loads() there
   };
 
   // outcome, of the group at hand, then of the step

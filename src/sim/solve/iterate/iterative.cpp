@@ -32,6 +32,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
       allowed_overlap_(sim::allowed_overlap(model)),
       every_(std::max<std::int64_t>(1, std::llround(value(model.rate) / kPairSearches))),
       moving_(model.bodies.size() + 1) {
+  for (const Body<D>& body : model.bodies) bounding_radius_.push_back(bounding_radius(body.shape));
   const double h = 1 / value(model.rate);
   substeps_ = substeps_for(0, h);
   restitution_threshold_ = 2 * h / substeps_ * g_ + 1e-9 * model.scale;
@@ -43,7 +44,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
 template <int D>
 bool Iterative<D>::collide(StepPart<D> step) {
   State<D>& state = step.state;
-  corrected_ = false;
+  corrected_ = false, closing_rate_ = 0;
   state.frozen.resize(model_.bodies.size()), state.quiet.resize(model_.bodies.size());
   joints_.prepare(state), joints_.clear_pushed();
   if (state.step == 0) joints_.project_initial_velocities(state);
@@ -53,6 +54,7 @@ bool Iterative<D>::collide(StepPart<D> step) {
 template <int D>
 void Iterative<D>::wake(StepPart<D> step) {
   update_sleep(step);
+  foresee_speeds(step);
   closing_rate_ = closing_rate(step.h);
   substeps_ = substeps_for(closing_rate_, step.h);
   notes_.begin(step.state);
@@ -111,15 +113,6 @@ void Iterative<D>::project(StepPart<D> part) {
   if (notes_.any()) note_touches(part);
 }
 
-template <int D>
-void Iterative<D>::sleep(StepPart<D> step) {
-  if (!sleep_.due(step.state)) return;
-  const std::span<typename Sleep<D>::Island> islands = sleep_.candidates(step.state);
-  if (islands.empty()) return;
-  find_equilibrium(islands, step.state, step.h / substeps_);
-  if (sleep_.put_to_sleep(step.state)) stop_sleeping(step.state);
-}
-
 // which watched pairs bear or are struck in a substep
 template <int D>
 void Iterative<D>::note_touches(StepPart<D> part) {
@@ -140,6 +133,26 @@ bool Iterative<D>::wake_near_driven(StepPart<D> step, double span) {
 }
 
 template <int D>
+double Iterative<D>::farther(int i, double t, double h) {
+  const BodyMotion<D> now = drives_.at(i, t).at, then = drives_.at(i, t + h).at;
+  const double turns = std::max(std::sqrt((then.w - now.w).squaredNorm()),
+                                drives_.fastest(i, t, h).spin - std::sqrt(now.w.squaredNorm()));
+  return std::max(0.0, drives_.travel(i, t, h) - h * std::sqrt(now.v.squaredNorm())) +
+         h * bounding_radius_[std::size_t(drives_.body(i))] * turns;
+}
+
+// how much faster kinematic bodies become within the step than they are now
+template <int D>
+void Iterative<D>::foresee_speeds(StepPart<D> step) {
+  if (drives_.any()) quicker_.assign(model_.bodies.size(), 0);
+  for (int i = 0; i < drives_.size(); ++i) {
+    const auto body = std::size_t(drives_.body(i));
+    quicker_[body] =
+        drives_.fastest(i, step.t, step.h).beyond(drives_.at(i, step.t).at, bounding_radius_[body]);
+  }
+}
+
+template <int D>
 void Iterative<D>::begin_corrections() {
   if (!corrected_) corrections_.assign(model_.bodies.size(), Vec<D>::Zero());
   corrected_ = true;
@@ -151,19 +164,19 @@ void Iterative<D>::poses_to_joints() {
 }
 
 template <int D>
-void Iterative<D>::velocities_to_joints(const std::vector<char>* of) {
-  for (const int i : joints_.bodies()) {
-    if (of && !(*of)[std::size_t(i)]) continue;
+void Iterative<D>::velocities_to_joints(std::span<const int> of) {
+  for (const int i : of) {
+    if (!joints_.has(i)) continue;
     const MovingBody<D>& m = moving_[std::size_t(i)];
     joints_.body_motion(i).v = velocity(m), joints_.body_motion(i).w = spin(m);
   }
 }
 
 template <int D>
-void Iterative<D>::velocities_from_joints(const std::vector<char>* of) {
-  for (const int i : joints_.bodies()) {
-    if (of && !(*of)[std::size_t(i)]) continue;
-    set_velocity(moving_[std::size_t(i)], joints_.body_motion(i).v, joints_.body_motion(i).w);
+void Iterative<D>::velocities_from_joints(std::span<const int> of) {
+  for (const int i : of) {
+    if (joints_.has(i))
+      set_velocity(moving_[std::size_t(i)], joints_.body_motion(i).v, joints_.body_motion(i).w);
   }
 }
 

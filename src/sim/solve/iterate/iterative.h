@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -88,8 +89,13 @@ class Iterative : public ContactSolver<D> {
   /// The pairs that bear or are struck in the substep.
   virtual void list_touching(StepPart<D> part, std::vector<std::pair<int, int>>& pairs) const = 0;
 
-  /// Finds forces under which candidates for sleep stay at rest, into the state and their residuals.
-  virtual void find_equilibrium(std::span<typename Sleep<D>::Island> islands, State<D>& state, double h) = 0;
+  /// The contacts of an island that may fall asleep, by themselves, and the forces that they had. How many
+  /// iterations they may take.
+  virtual int begin_rest(const typename Sleep<D>::Island& island, const State<D>& state, double h) = 0;
+  /// The i-th of them.
+  virtual void iterate_rest(int i) = 0;
+  /// Their forces, to where the next substep finds them and into the state.
+  virtual void finish_rest(const typename Sleep<D>::Island& island, State<D>& state, double h) = 0;
   /// Some bodies have just fallen asleep.
   virtual void stop_sleeping(const State<D>&) {}
 
@@ -107,13 +113,24 @@ class Iterative : public ContactSolver<D> {
   double corrected_share(const State<D>& state, double time) const {
     return at_start(state) ? 1 : sim::corrected_share(time);
   }
+  /// Of the fastest point of a body, at most, m/s.
+  double swiftness(int body) const {
+    const MovingBody<D>& m = moving_[std::size_t(body)];
+    return std::sqrt(velocity(m).squaredNorm()) +
+           bounding_radius_[std::size_t(body)] * std::sqrt(spin(m).squaredNorm());
+  }
   bool wake_near_driven(StepPart<D> step, double span);
+  /// How far the i-th kinematic body may be, within h s from t, from where its velocity at t takes it, m.
+  double farther(int i, double t, double h);
+  void foresee_speeds(StepPart<D> step);
   void begin_corrections();
-  /// To the joint solver: its bodies where the substep begins; the velocities of all its bodies, or of those
-  /// marked; and these back.
+  /// To the joint solver: its bodies where the substep begins; velocities, of bodies on joints among these;
+  /// and these back.
   void poses_to_joints();
-  void velocities_to_joints(const std::vector<char>* of = nullptr);
-  void velocities_from_joints(const std::vector<char>* of = nullptr);
+  void velocities_to_joints(std::span<const int> of);
+  void velocities_to_joints() { velocities_to_joints(joints_.bodies()); }
+  void velocities_from_joints(std::span<const int> of);
+  void velocities_from_joints() { velocities_from_joints(joints_.bodies()); }
   void solve_joint_velocities();
 
   const Model<D>& model_;
@@ -122,23 +139,29 @@ class Iterative : public ContactSolver<D> {
   Drives<D> drives_;
   Sleep<D> sleep_;
   Stages stages_;
-  std::vector<char> carries_;  // one a body: kinematic or with a belt; empty: there are none
+  std::vector<char> carries_;    // one a body: kinematic or with a belt; empty: there are none
+  std::vector<double> quicker_;  // one a body, m/s: how much faster the step moves it; empty: none are moved
   double g_ = 0;
   double restitution_threshold_ = 0;  // m/s: slower approaches do not bounce
   AllowedOverlap allowed_overlap_;
-  std::int64_t every_ = 1;             // steps between two pair searches
-  int substeps_ = 1;                   // of this step
-  double closing_rate_ = 0;            // at the start of the step
-  std::vector<MovingBody<D>> moving_;  // one a body, and one more that never moves, for walls
-  std::vector<Vec<D>> corrections_;    // how far this step has pushed each body out of others, m
+  std::int64_t every_ = 1;               // steps between two pair searches
+  int substeps_ = 1;                     // of this step
+  double closing_rate_ = 0;              // at the start of the step; 0: not known yet
+  std::vector<double> bounding_radius_;  // of bodies, m
+  std::vector<MovingBody<D>> moving_;    // one a body, and one more that never moves, for walls
+  std::vector<MovingBody<D>> kept_;      // those of the step, while others are in moving_
+  std::vector<Vec<D>> corrections_;      // how far this step has pushed each body out of others, m
   bool corrected_ = false;
 
  private:
   void project_joints(StepPart<D> part);
+  void fall_from_rest(std::span<const typename Sleep<D>::Island> islands, double h);
+  void find_equilibrium(typename Sleep<D>::Island& island, State<D>& state, double h);
   void note_touches(StepPart<D> part);
 
   TouchNotes<D> notes_;
   std::vector<std::pair<int, int>> touching_;
+  std::vector<char> on_joints_;  // bodies: of those that rest
 };
 
 }  // namespace obscura::sim

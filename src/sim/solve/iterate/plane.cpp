@@ -45,7 +45,6 @@ PlaneIterative::PlaneIterative(const Model<D>& model, const std::vector<Path<D>>
       cores_(model),
       pairs_(model, cores_),
       impacts_(cores_, pairs_),
-      equilibrium_(model, cores_),
       driven_(std::size_t(drives_.size())) {
   const int n = int(model.bodies.size());
   span_ = double(every_) * (1 / value(model.rate));
@@ -101,7 +100,23 @@ void PlaneIterative::update_sleep(StepPart<D> step) {
 }
 
 double PlaneIterative::closing_rate(double h) const {
-  return plane::closing_rate(batches_.data(), int(batches_.size()), poses_.data(), moving_.data(), h);
+  double most = plane::closing_rate(batches_.data(), int(batches_.size()), poses_.data(), moving_.data(), h);
+  if (std::all_of(quicker_.begin(), quicker_.end(), [](double speed) { return speed == 0; })) return most;
+  // of what is moved, as fast as it becomes within the step
+  for (const Pair& pair : pairs_.all()) {
+    const double quicker = pair.b < 0 ? 0 : quicker_[pair.a] + quicker_[pair.b];
+    if (pair.slot < 0 || quicker == 0) continue;
+    const ContactBatch& g = batches_[pair.slot / kLanes];
+    const int lane = pair.slot % kLanes;
+    for (int k = 0; k < pair.touches; ++k) {
+      const plane::TouchRow r = plane::row(g, lane, k, poses_[pair.a], poses_[pair.b]);
+      const double closes =
+          quicker + std::max(0.0, -plane::normal_speed(r, moving_[pair.a], moving_[pair.b]));
+      if ((r.gap - h * closes) * g.per_width[lane] < kNearly)
+        most = std::max(most, closes * g.per_width[lane]);
+    }
+  }
+  return most;
 }
 
 void PlaneIterative::report(StepPart<D> step) {
@@ -128,10 +143,6 @@ void PlaneIterative::place_contacts(State<D>& state, bool all) const {
       contact.point = {at.x, at.y}, contact.normal = {at.nx, at.ny}, contact.gap = at.gap;
     }
   }
-}
-
-void PlaneIterative::find_equilibrium(std::span<Sleep<D>::Island> islands, State<D>& state, double h) {
-  equilibrium_.find(islands, sleep_, state, {pairs_.all(), batches_, joints_, poses_}, h);
 }
 
 // zeroes the velocities of bodies that have just fallen asleep
@@ -574,15 +585,7 @@ void PlaneIterative::share_free_motion(StepPart<D> part) {
 
 // tells the pair search how far they may be from where their velocities at t take them
 void PlaneIterative::foresee_driven(double t) {
-  for (int i = 0; i < drives_.size(); ++i) {
-    const int body = drives_.body(i);
-    const DrivenMotion<D> now = drives_.at(i, t), then = drives_.at(i, t + span_);
-    const double speed = std::sqrt(now.at.v.squaredNorm()),
-                 turns = std::fabs(then.turn[0] - now.turn[0]) - span_ * std::fabs(now.at.w[0]);
-    const double farther = std::max(0.0, drives_.travel(i, t, span_) - span_ * speed) +
-                           std::max(0.0, turns) * cores_.bounding_radius[body];
-    pairs_.foresee(body, farther);
-  }
+  for (int i = 0; i < drives_.size(); ++i) pairs_.foresee(drives_.body(i), farther(i, t, span_));
 }
 
 // their velocities and displacements in the substep, from their motion

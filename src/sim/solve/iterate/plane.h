@@ -10,7 +10,6 @@
 #include "sim/solve/iterate/exact_island.h"
 #include "sim/solve/iterate/iterative.h"
 #include "sim/solve/iterate/plane_contact_rows.h"
-#include "sim/solve/iterate/plane_equilibrium.h"
 #include "sim/solve/iterate/plane_impacts.h"
 #include "sim/solve/iterate/plane_pair_cache.h"
 
@@ -52,7 +51,9 @@ class PlaneIterative final : public Iterative<2> {
   void moved_by_joints(const State<D>& state, int body) override;
   void finish_substep(StepPart<D> part) override;
   void list_touching(StepPart<D> part, std::vector<std::pair<int, int>>& pairs) const override;
-  void find_equilibrium(std::span<Sleep<D>::Island> islands, State<D>& state, double h) override;
+  int begin_rest(const Sleep<D>::Island& island, const State<D>& state, double h) override;
+  void iterate_rest(int i) override;
+  void finish_rest(const Sleep<D>::Island& island, State<D>& state, double h) override;
   void stop_sleeping(const State<D>& state) override;
 
   using Motion = plane::Motion;
@@ -67,6 +68,7 @@ class PlaneIterative final : public Iterative<2> {
     return kSight * (thin > 0 ? thin : std::min(thick, kPointWidth * model_.scale));
   }
 
+  static plane::ContactBatch empty_batch(int none);
   bool gather(const State<D>& state);
   bool first(StepPart<D> part) const { return part.substep == 0 && part.state.step % every_ == 0; }
   double share(StepPart<D> part) const;
@@ -107,7 +109,6 @@ class PlaneIterative final : public Iterative<2> {
   plane::CoreShapes cores_;
   plane::Pairs pairs_;
   plane::Impacts impacts_;
-  plane::Equilibrium equilibrium_;
   std::vector<DrivenMotion<D>> driven_;  // kinematic bodies at the end of the substep
   double driven_gain_ = 0;               // m/s: the most that a substep adds to a point of a kinematic body
   double span_ = 0;                      // s between two pair searches
@@ -139,6 +140,9 @@ class PlaneIterative final : public Iterative<2> {
   std::vector<plane::ContactBatch> batches_;
   std::vector<plane::Projection> projections_;
   plane::LaneList slow_, fast_;
+  // of an island at rest: its pairs, by lane, and batches of its own
+  std::vector<int> rest_;
+  std::vector<plane::ContactBatch> rest_batches_;
   plane::StepConstants constants_;  // of the substep
   plane::ActiveBodies active_bodies_;
   std::vector<int> few_bodies_, few_groups_;              // of islands of few pairs

@@ -25,6 +25,10 @@ constexpr int kColours = 40;    // lanes of more colours hold one pair each
 constexpr int kPerSpare = 128;  // lanes of a colour: one group more for so many
 constexpr int kAhead = 8;       // lanes
 
+// iterations of an island at rest
+constexpr int kRestPairs = 40000;  // pairs times iterations
+constexpr int kFewestAtRest = 10, kMostAtRest = 400;
+
 bool meets_corners(const Pair& pair) { return Feature::of(pair.words[0]).kind == Feature::corners; }
 
 }  // namespace
@@ -171,12 +175,18 @@ bool PlaneIterative::update_batches(const State<D>& state) {
   return true;
 }
 
+// unused lanes, with the dummy body
+ContactBatch PlaneIterative::empty_batch(int none) {
+  ContactBatch made{};
+  for (int k = 0; k < kLanes; ++k) {
+    made.a[k] = made.b[k] = none, made.pair[k] = made.first[k] = -1;
+    made.d[0][k] = made.d[1][k] = -plane::kNowhere, made.per_width[k] = 1;
+  }
+  return made;
+}
+
 void PlaneIterative::clear_lane(int slot) {
-  static const ContactBatch empty = [] {
-    ContactBatch made{};
-    for (int k = 0; k < kLanes; ++k) made.d[0][k] = made.d[1][k] = -plane::kNowhere, made.per_width[k] = 1;
-    return made;
-  }();
+  static const ContactBatch empty = empty_batch(0);
   ContactBatch& g = batches_[slot / kLanes];
   const int lane = slot % kLanes, rest = ~(1 << lane), none = int(turns_.size());
   copy_lane(empty, lane, g, lane);
@@ -234,6 +244,49 @@ void PlaneIterative::write_lane(const Pair& pair, const State<D>& state) {
     const bool none = k >= pair.touches || Feature::of(pair.words[k]).kind == Feature::none;
     const Vec<D> force = none ? Vec<D>(Vec<D>::Zero()) : state.contacts[pair.first + k].force;
     g.p[k][lane] = force[0], g.q[k][lane] = force[1];
+  }
+}
+
+// --- islands at rest (sim/solve/iterate/equilibrium.cpp)
+
+// The pairs of an island in batches of its own, those of one colour together.
+int PlaneIterative::begin_rest(const Sleep<D>::Island& island, const State<D>& state, double h) {
+  const std::vector<Pair>& all = pairs_.all();
+  rest_.clear(), rest_batches_.clear();
+  for (const int contact : island.contacts) {
+    const auto after = std::upper_bound(all.begin(), all.end(), contact,
+                                        [](int number, const Pair& pair) { return number < pair.first; });
+    const int pair = int(after - all.begin()) - 1;
+    if (rest_.empty() || rest_.back() != pair) rest_.push_back(pair);
+  }
+  std::sort(rest_.begin(), rest_.end(), [&](int i, int j) { return all[i].slot < all[j].slot; });
+  int lane = kLanes, colour = -1;
+  for (const int i : rest_) {
+    const Pair& pair = all[i];
+    if (lane == kLanes || pair.colour != colour || pair.alone)
+      rest_batches_.push_back(empty_batch(int(state.x.size()))), lane = 0, colour = pair.colour;
+    copy_lane(batches_[pair.slot / kLanes], pair.slot % kLanes, rest_batches_.back(), lane++);
+  }
+  constants_ = {h, 1e300, 0, {}, nullptr};
+  old_.assign(old_.size(), {});
+  plane::warm_start(rest_batches_.data(), int(rest_batches_.size()), poses_.data(), old_.data(),
+                    moving_.data(), constants_, slow_, fast_);
+  return std::clamp(kRestPairs / std::max(1, int(rest_.size())), kFewestAtRest, kMostAtRest);
+}
+
+void PlaneIterative::iterate_rest(int) {
+  plane::iterate(rest_batches_.data(), int(rest_batches_.size()), poses_.data(), moving_.data(), constants_);
+}
+
+void PlaneIterative::finish_rest(const Sleep<D>::Island&, State<D>& state, double) {
+  plane::iterate_last(rest_batches_.data(), int(rest_batches_.size()), poses_.data(), moving_.data(),
+                      constants_, state.contacts.data());
+  for (const ContactBatch& own : rest_batches_) {
+    for (int k = 0; k < kLanes; ++k) {
+      if (own.pair[k] < 0) continue;
+      const int slot = pairs_.all()[own.pair[k]].slot;
+      copy_lane_forces(own, k, batches_[slot / kLanes], slot % kLanes);
+    }
   }
 }
 

@@ -24,13 +24,12 @@ bool other_corners(const ContactBatch& g, int k, int lane) {
 }  // namespace
 
 // where a body is at a time after its last impact, and how it moves there
-void Impacts::move(int body, double when, const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                   const StepConstants& pace, Pose& pose, Motion& v) const {
+void Impacts::move(int body, double when, const Step& step, Pose& pose, Motion& v) const {
   const bool there = when_[body] == when;
-  pose = there ? pose_[body] : poses[body], v = now_[body];
+  pose = there ? pose_[body] : step.poses[body], v = now_[body];
   if (there) return;
-  const Motion& gain = dv[body];
-  const double time = when - std::max(0.0, when_[body]), share = time / pace.h, half = 0.5 * share;
+  const Motion& gain = step.dv[body];
+  const double time = when - std::max(0.0, when_[body]), share = time / step.pace.h, half = 0.5 * share;
   double x = time * (v.x + half * gain.x), y = time * (v.y + half * gain.y), w = time * (v.w + half * gain.w);
   if (when_[body] >= 0) x += way_[body].x, y += way_[body].y, w += way_[body].w;
   v.x += share * gain.x, v.y += share * gain.y, v.w += share * gain.w;
@@ -43,8 +42,7 @@ void Impacts::move(int body, double when, const std::vector<Pose>& poses, const 
 
 // a pair at a time
 Impacts::PlacedPair Impacts::placed_at(const Pair& pair, double when, const ContactBatch& g,
-                                       const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                                       const StepConstants& pace) const {
+                                       const Step& step) const {
   const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
   PlacedPair at;
   at.when = when;
@@ -53,17 +51,17 @@ Impacts::PlacedPair Impacts::placed_at(const Pair& pair, double when, const Cont
   if (start)
     at.a = now_[a], at.b = now_[b];
   else
-    move(a, when, poses, dv, pace, pose_a, at.a), move(b, when, poses, dv, pace, pose_b, at.b);
+    move(a, when, step, pose_a, at.a), move(b, when, step, pose_b, at.b);
   for (int k = 0; k < pair.touches; ++k)
-    at.rows[k] = row(g, lane, k, start ? poses[a] : pose_a, start ? poses[b] : pose_b);
+    at.rows[k] = row(g, lane, k, start ? step.poses[a] : pose_a, start ? step.poses[b] : pose_b);
   return at;
 }
 
 // when a touch closes with an impact, by its course from where it stands, s; never: kNeverCloses
 double Impacts::closing_guess(const Pair& pair, int k, const ContactBatch& g, const PlacedPair& at,
-                              const std::vector<Motion>& dv, const StepConstants& pace) const {
+                              const Step& step) const {
   const int lane = pair.slot % kLanes;
-  const Motion &a = at.a, &b = at.b, &gain_a = dv[g.a[lane]], &gain_b = dv[g.b[lane]];
+  const Motion &a = at.a, &b = at.b, &gain_a = step.dv[g.a[lane]], &gain_b = step.dv[g.b[lane]];
   const TouchRow& r = at.rows[k];
   const double vn = normal_speed(r, a, b), gap = r.gap;
   if (gap > g.sight[lane] || !(vn < g.impact_speed[lane])) return kNeverCloses;
@@ -75,30 +73,29 @@ double Impacts::closing_guess(const Pair& pair, int k, const ContactBatch& g, co
     const double under = p * p - (vn * vn + vt * vt) * q;
     if (under > 0) return at.when + q / (std::sqrt(under) - p);
   }
-  return at.when + left / -std::min(vn, vn - 0.5 * dvn * left / (pace.h * vn));
+  return at.when + left / -std::min(vn, vn - 0.5 * dvn * left / (step.pace.h * vn));
 }
 
 // the same where its bodies stand by then
 double Impacts::closing_time(const Pair& pair, int k, const ContactBatch& g, const PlacedPair& start,
-                             const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                             const StepConstants& pace) const {
-  const double guess = closing_guess(pair, k, g, start, dv, pace);
+                             const Step& step) const {
+  const double guess = closing_guess(pair, k, g, start, step);
   if (guess == kNeverCloses || start.rows[k].gap <= 0) return guess;
-  return sim::closing_time(start.when, guess, pace.h, g.impact_speed[pair.slot % kLanes], [&](double when) {
-    const PlacedPair at = placed_at(pair, when, g, poses, dv, pace);
-    return GapInTime{at.rows[k].gap, normal_speed(at.rows[k], at.a, at.b)};
-  });
+  return sim::closing_time(start.when, guess, step.pace.h, g.impact_speed[pair.slot % kLanes],
+                           [&](double when) {
+                             const PlacedPair at = placed_at(pair, when, g, step);
+                             return GapInTime{at.rows[k].gap, normal_speed(at.rows[k], at.a, at.b)};
+                           });
 }
 
 // Whether a pair may meet with an impact in what is left of the step, by its rows as it stands: most do not.
-bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const std::vector<Pose>& poses,
-                       const std::vector<Motion>& dv, const StepConstants& pace) const {
+bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Step& step) const {
   const int lane = pair.slot % kLanes, a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
   double spare = -1;  // what it may come nearer than by these rows and velocities, m
-  const double from = std::max({0.0, when_[a], when_[b]}), time = pace.h - from;
-  Pose pose_a = poses[a], pose_b = poses[b];
+  const double from = std::max({0.0, when_[a], when_[b]}), time = step.pace.h - from;
+  Pose pose_a = step.poses[a], pose_b = step.poses[b];
   Motion va = now_[a], vb = now_[b];
-  if (from > 0) move(a, from, poses, dv, pace, pose_a, va), move(b, from, poses, dv, pace, pose_b, vb);
+  if (from > 0) move(a, from, step, pose_a, va), move(b, from, step, pose_b, vb);
   const auto fastest = [&] {
     return std::fabs(va.x - vb.x) + std::fabs(va.y - vb.y) +
            g.far[lane] * (std::fabs(va.w) + std::fabs(vb.w));
@@ -106,9 +103,10 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const std::vecto
   for (int k = 0; k < pair.touches; ++k) {
     const TouchRow r = row(g, lane, k, pose_a, pose_b);
     const double vn = normal_speed(r, va, vb);
-    if (other_corners(g, k, lane) && r.gap < time * (fastest() + pace.gravity_dv)) return true;
+    if (other_corners(g, k, lane) && r.gap < time * (fastest() + step.pace.gravity_dv)) return true;
     if (vn > -pair.impact_speed) continue;
-    const double left = r.gap + time * (vn + 0.5 * time / pace.h * normal_speed(r, dv[a], dv[b]));
+    const double left =
+        r.gap + time * (vn + 0.5 * time / step.pace.h * normal_speed(r, step.dv[a], step.dv[b]));
     if (left >= 0 && spare < 0) {
       const double far = std::max(bounding_radius_[a], bounding_radius_[b]),
                    w = std::fabs(va.w) + std::fabs(vb.w);
@@ -124,12 +122,11 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const std::vecto
 
 // when the first of a pair's touches closes with an impact, and which
 double Impacts::first_closing(const Pair& pair, const ContactBatch& g, const PlacedPair& start,
-                              const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                              const StepConstants& pace, int& which) const {
+                              const Step& step, int& which) const {
   double first = kNeverCloses;
   which = 0;
   for (int k = 0; k < pair.touches; ++k) {
-    const double when = closing_time(pair, k, g, start, poses, dv, pace);
+    const double when = closing_time(pair, k, g, start, step);
     if (when < first) first = when, which = k;
   }
   return first;
@@ -139,16 +136,14 @@ double Impacts::first_closing(const Pair& pair, const ContactBatch& g, const Pla
 // lane. If other features are nearest by then, conservative advancement: goes on by a time in which the pair
 // surely does not meet, takes the nearest features there, and again until these are still the nearest when
 // they close.
-bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& at,
-                           const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                           const StepConstants& pace) {
+bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& at, const Step& step) {
   const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
   int which, words[2];
-  double when = first_closing(pair, g, at, poses, dv, pace, which);
+  double when = first_closing(pair, g, at, step, which);
   const auto find_features = [&](double time) {
     Pose pose_a, pose_b;
     Motion v_a, v_b;
-    move(a, time, poses, dv, pace, pose_a, v_a), move(b, time, poses, dv, pace, pose_b, v_b);
+    move(a, time, step, pose_a, v_a), move(b, time, step, pose_b, v_b);
     pairs_.features(pair, pose_a, pose_b, words);
   };
   const auto knows = [&](const ContactBatch& by, int k) {
@@ -156,14 +151,14 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& 
   };
   const auto place_renewed = [&](double time) {
     pairs_.put(pair, words, fresh_);
-    at = placed_at(pair, time, fresh_, poses, dv, pace);
+    at = placed_at(pair, time, fresh_, step);
     at.renewed = true;
   };
   // whether that is all there is to find
   const auto found = [&](const ContactBatch& by) {
     // round things have no other features
     if (g.calm[lane] < 1e300) {
-      find_features(std::min(when, pace.h));
+      find_features(std::min(when, step.pace.h));
       if (!knows(by, 0) || (pair.touches > 1 && !knows(by, 1))) {
         if (&by != &fresh_) copy_lane(by, lane, fresh_, lane);
         if (when == kNeverCloses || !knows(by, which)) return false;
@@ -172,7 +167,7 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& 
       }
     }
     if (when < kNeverCloses && when != at.when) {
-      at = placed_at(pair, when, by, poses, dv, pace);
+      at = placed_at(pair, when, by, step);
       at.renewed = &by != &g;
     }
     return true;
@@ -181,42 +176,40 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& 
 
   const double from = at.when;
   const Motion &p = at.a, &q = at.b;
-  const double fastest = std::fabs(p.x - q.x) + std::fabs(p.y - q.y) + std::fabs(dv[a].x - dv[b].x) +
-                         std::fabs(dv[a].y - dv[b].y) +
-                         (std::fabs(p.w) + std::fabs(dv[a].w)) * bounding_radius_[a] +
-                         (std::fabs(q.w) + std::fabs(dv[b].w)) * bounding_radius_[b];
+  const double fastest = std::fabs(p.x - q.x) + std::fabs(p.y - q.y) +
+                         std::fabs(step.dv[a].x - step.dv[b].x) + std::fabs(step.dv[a].y - step.dv[b].y) +
+                         (std::fabs(p.w) + std::fabs(step.dv[a].w)) * bounding_radius_[a] +
+                         (std::fabs(q.w) + std::fabs(step.dv[b].w)) * bounding_radius_[b];
   const auto gap = [&] {
     return pair.touches > 1 ? std::min(at.rows[0].gap, at.rows[1].gap) : at.rows[0].gap;
   };
   double apart = -1;  // s: when it was last
-  for (double time = from; time <= pace.h;) {
+  for (double time = from; time <= step.pace.h;) {
     find_features(time), place_renewed(time);
     if (gap() <= 0 && apart >= 0) {
       // on the way
-      for (double low = apart; time - low > kInTime * pace.h;) {
+      for (double low = apart; time - low > kInTime * step.pace.h;) {
         const double mid = 0.5 * (low + time);
         find_features(mid), place_renewed(mid);
         (gap() > 0 ? low : time) = mid;
       }
       find_features(time), place_renewed(time);
     }
-    when = first_closing(pair, fresh_, at, poses, dv, pace, which);
+    when = first_closing(pair, fresh_, at, step, which);
     if (when == time) return true;
     if (found(fresh_)) return when < kNeverCloses;
     apart = gap() > 0 ? time : -1;
-    time += std::max(kForward * pace.h, gap() / fastest);
+    time += std::max(kForward * step.pace.h, gap() / fastest);
   }
   return false;
 }
 
 // When and where a pair meets with an impact in the step, into `impact`; false where it does not.
-bool Impacts::find_impact(const Pair& pair, Impact& impact, const ContactBatch& g,
-                          const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                          const StepConstants& pace) {
+bool Impacts::find_impact(const Pair& pair, Impact& impact, const ContactBatch& g, const Step& step) {
   const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
   const double from = std::max({0.0, when_[a], when_[b]});
-  PlacedPair at = placed_at(pair, from, g, poses, dv, pace);
-  if (!find_meeting(pair, g, at, poses, dv, pace)) return false;
+  PlacedPair at = placed_at(pair, from, g, step);
+  if (!find_meeting(pair, g, at, step)) return false;
   const double when = at.when;
   impact.when = when, impact.renewed = at.renewed;
   bool any = false;

@@ -62,7 +62,7 @@ void Impacts::reach(int body, double when, const Step& step) {
   Motion& v = now_[body];
   if (v.im == 0 || when_[body] == when) return;
   Motion ignored;
-  move(body, when, step.poses, step.dv, step.pace, pose_[body], ignored);
+  move(body, when, step, pose_[body], ignored);
   if (when_[body] < 0) {
     bodies_.push_back(body);
     first_[body] = when, way_[body] = dv_impacts_[body] = {};
@@ -119,8 +119,8 @@ bool Impacts::predict(int i, Impact& impact, const std::vector<ContactBatch>& ba
       pair.impact_speed)
     return false;
   const ContactBatch& g = batches[pair.slot / kLanes];
-  if (!may_meet(pair, g, step.poses, step.dv, step.pace)) return false;
-  if (!find_impact(pair, impact, g, step.poses, step.dv, step.pace)) {
+  if (!may_meet(pair, g, step)) return false;
+  if (!find_impact(pair, impact, g, step)) {
     passing_.push_back(i);
     return false;
   }
@@ -202,38 +202,35 @@ void Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
 // rest of the substep. If a pair struck by other features than its rows have, the rows may separate fast
 // while these features hardly do: to keep up such a speed would take energy from nowhere, so the target is at
 // most zero.
-void Impacts::leave_to_iterations(const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
-                                  const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                                  const StepConstants& pace) {
+void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step& step) {
   if (least_.size() < batches.size()) least_.resize(batches.size());
   for (const Impact& impact : impacts_) waiting_[impact.pair] = impact.renewed ? 2 : 1;
   const int room = int(now_.size()) - 1;
   const auto leave = [&](int i) {
-    const Pair& pair = pairs[i];
+    const Pair& pair = step.pairs[i];
     const int group = pair.slot / kLanes, lane = pair.slot % kLanes, b = pair.b >= 0 ? pair.b : room;
     ContactBatch& g = batches[group];
-    const Rows& r = rows(group, batches, poses);
+    const Rows& r = rows(group, batches, step.poses);
     const char met = waiting_[i];
     double v[2];
     bool any = met != 0;
     const double last = std::max({0.0, when_[pair.a], when_[b]});
-    const Step step{pairs, poses, dv, pace};
     const Motion va = motion_at(pair.a, last, step), vb = motion_at(b, last, step);
     for (int k = 0; k < pair.touches; ++k) {
       v[k] = normal_speed(r, k, lane, va, vb);
-      any = any || (v[k] < 0 && r.gap[k][lane] + pace.h * v[k] < 0);
+      any = any || (v[k] < 0 && r.gap[k][lane] + step.pace.h * v[k] < 0);
     }
     if (!any) return;
-    const PlacedPair at = placed_at(pair, last, g, poses, dv, pace);
-    const double left = pace.h - at.when;
+    const PlacedPair at = placed_at(pair, last, g, step);
+    const double left = step.pace.h - at.when;
     for (int k = 0; k < pair.touches; ++k) {
       const double gap = at.rows[k].gap, vn = normal_speed(at.rows[k], at.a, at.b);
       double& least = least_[group].n[k][lane];
       g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
       least = v[k] - vn;
       if (met == 2) least = std::min(least, 0.0);
-      least =
-          target_after_impacts(least, {gap, vn}, kTogether * g.far[lane], g.impact_speed[lane], left, pace.h);
+      least = target_after_impacts(least, {gap, vn}, kTogether * g.far[lane], g.impact_speed[lane], left,
+                                   step.pace.h);
     }
   };
   for (const int i : passing_) leave(i);
@@ -303,7 +300,7 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
     const Motion& given = dv_impacts_[body];
     v[body].x += given.x, v[body].y += given.y, v[body].w += given.w;
   }
-  leave_to_iterations(pairs, batches, poses, dv, pace);
+  leave_to_iterations(batches, step);
   return -1;
 }
 

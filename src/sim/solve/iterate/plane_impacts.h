@@ -91,25 +91,17 @@ class Impacts {
     const StepConstants& pace;
   };
   void reach(int body, double when, const Step& step);
-  void move(int body, double when, const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-            const StepConstants& pace, Pose& pose, Motion& v) const;
-  PlacedPair placed_at(const Pair& pair, double when, const ContactBatch& batches,
-                       const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                       const StepConstants& pace) const;
+  void move(int body, double when, const Step& step, Pose& pose, Motion& v) const;
+  PlacedPair placed_at(const Pair& pair, double when, const ContactBatch& batches, const Step& step) const;
   double closing_guess(const Pair& pair, int k, const ContactBatch& batches, const PlacedPair& at,
-                       const std::vector<Motion>& dv, const StepConstants& pace) const;
+                       const Step& step) const;
   double closing_time(const Pair& pair, int k, const ContactBatch& batches, const PlacedPair& start,
-                      const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                      const StepConstants& pace) const;
-  bool may_meet(const Pair& pair, const ContactBatch& batches, const std::vector<Pose>& poses,
-                const std::vector<Motion>& dv, const StepConstants& pace) const;
+                      const Step& step) const;
+  bool may_meet(const Pair& pair, const ContactBatch& batches, const Step& step) const;
   double first_closing(const Pair& pair, const ContactBatch& batches, const PlacedPair& start,
-                       const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                       const StepConstants& pace, int& which) const;
-  bool find_meeting(const Pair& pair, const ContactBatch& batches, PlacedPair& at,
-                    const std::vector<Pose>& poses, const std::vector<Motion>& dv, const StepConstants& pace);
-  bool find_impact(const Pair& pair, Impact& impact, const ContactBatch& batches,
-                   const std::vector<Pose>& poses, const std::vector<Motion>& dv, const StepConstants& pace);
+                       const Step& step, int& which) const;
+  bool find_meeting(const Pair& pair, const ContactBatch& batches, PlacedPair& at, const Step& step);
+  bool find_impact(const Pair& pair, Impact& impact, const ContactBatch& batches, const Step& step);
   int rounds(const Pair& pair) const { return rounds_[pair.a] + (pair.b < 0 ? 0 : rounds_[pair.b]); }
   void look_at(int pair);
   bool predict(int pair, Impact& impact, const std::vector<ContactBatch>& batches, const Step& step);
@@ -130,9 +122,7 @@ class Impacts {
     v.x += share * gain.x, v.y += share * gain.y, v.w += share * gain.w;
     return v;
   }
-  void leave_to_iterations(const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
-                           const std::vector<Pose>& poses, const std::vector<Motion>& dv,
-                           const StepConstants& pace);
+  void leave_to_iterations(std::vector<ContactBatch>& batches, const Step& step);
   const Rows& rows(int group, const std::vector<ContactBatch>& batches, const std::vector<Pose>& poses);
 
   const Pairs& pairs_;

@@ -115,11 +115,12 @@ void NearPairs::mark_possible_impacts(double span) {
     const double vx = p.vx - q.vx, vy = p.vy - q.vy;
     const double passes = std::sqrt(vx * vx + vy * vy) + p.swing + q.swing;
     const double both = p.margin + q.margin, thick = p.half_thickness + q.half_thickness;
-    const double margin = std::min(both, span * passes + falls + 0.1 * thick);
+    const double farther = farther_.empty() ? 0 : farther_[a] + farther_[b];
+    const double margin = std::min(both, span * passes + falls + 0.1 * thick + farther);
     const double far = p.bounding_radius + q.bounding_radius + margin, dx = p.x - q.x, dy = p.y - q.y;
     const double thrown = std::max(p.speed, q.speed) + elasticity_ * std::min(p.speed, q.speed);
     candidates_[i].margin =
-        std::min(both, span * kThrown * std::max(passes, thrown) + falls + kSpare * thick);
+        std::min(both, span * kThrown * std::max(passes, thrown) + falls + kSpare * thick + farther);
     if (dx * dx + dy * dy <= far * far) exposed_[a] = exposed_[b] = 1;
     if (!still_[a] && !still_[b]) groups_.join(a, b);
   }

@@ -39,7 +39,6 @@ SpaceIterative::SpaceIterative(const Model<D>& model, const std::vector<Path<D>>
   for (const Body<D>& body : model.bodies) {
     width_.push_back(std::max(2 * half_thickness(body.shape), kPointWidth * model.scale));
     round_.push_back(bool(round_radius(body.shape)));
-    bounding_radius_.push_back(bounding_radius(body.shape));
     points_.push_back(is_point(body.shape));
   }
   farther_.resize(carries_.size());
@@ -51,6 +50,18 @@ bool SpaceIterative::find_contacts(StepPart<D> step) {
   found_for_ = 0;
   find(step);
   return true;
+}
+
+void SpaceIterative::update_sleep(StepPart<D> step) {
+  State<D>& state = step.state;
+  bool changed = wake_near_driven(step, step.h);
+  if (state.step == 0 || sleep_.any(state)) {
+    near_.clear();
+    for (const ContactConstraint& touch : touches_) near_.push_back(contact(touch, step.h));
+    changed = sleep_.wake(state, near_, step.h, step.h) || changed;
+    if (!changed && state.step == 0 && sleep_.at_start(state, near_)) state.contacts = near_, changed = true;
+  }
+  if (changed) prepare(state, step.t, step.h), find(step);
 }
 
 // how fast those close that touch, or may within h s: the most, in widths of the narrower body, 1/s
@@ -67,6 +78,8 @@ double SpaceIterative::closing_rate(double h) const {
       }
       closes = std::max(closes, kPassing * passes);
     }
+    // what is moved, as fast as it becomes within the step
+    if (!quicker_.empty()) closes += quicker_[touch.a] + (touch.b < n ? quicker_[touch.b] : 0);
     if ((touch.gap - h * closes) * touch.per_width < kNearly) most = std::max(most, closes * touch.per_width);
   }
   return most;
@@ -146,26 +159,31 @@ void SpaceIterative::prepare(const State<D>& state, double t, double h) {
     response_.set(i, !inactive_[i]);
     if (!inactive_[i]) moving_[i] = PointBody<D>(body, stances_[i]);
   }
+  std::fill(farther_.begin(), farther_.end(), 0);
   for (int i = 0; i < drives_.size(); ++i) {
     const int body = drives_.body(i);
     moving_[body].v = stances_[body].v, moving_[body].w = stances_[body].w;
-    const DrivenMotion<D> then = drives_.at(i, t + h);
-    const AngularVec<D> gain = then.at.w - stances_[body].w;
-    farther_[body] = std::max(0.0, drives_.travel(i, t, h) - h * std::sqrt(stances_[body].v.squaredNorm())) +
-                     h * bounding_radius_[body] * std::sqrt(gain.squaredNorm());
+    farther_[body] = farther(i, t, h);
+    if (!too_fast()) continue;
+    // at most twice as fast as the matter that strikes it, and then against what lies beside it
+    const double passes = swiftness(body) + farther_[body] / h;
+    for (int other = 0; other < n; ++other) {
+      const double near = bounding_radius_[body] + bounding_radius_[other] + h * passes;
+      if (inactive_[other] || (stances_[other].x - stances_[body].x).squaredNorm() > near * near) continue;
+      farther_[other] = std::max(farther_[other], 2 * h * passes);
+    }
   }
 }
 
-// of the fastest point, at most
-double SpaceIterative::swiftness(int body) const {
-  const PointBody<D>& m = moving_[body];
-  return std::sqrt(m.v.squaredNorm()) + bounding_radius_[body] * std::sqrt(m.w.squaredNorm());
-}
+// whether bodies come farther in a substep than pairs are to approach in one, however many the step has
+bool SpaceIterative::too_fast() const { return closing_rate_ > kCloser * kMostSubsteps; }
 
 // how far a body may come in a step, m
 double SpaceIterative::margin(int body, double h) const {
   if (drives_.number(body) >= 0) return h * swiftness(body) + farther_[body] + 1e-3 * bounding_radius_[body];
-  return inactive_[body] ? 0 : h * (1.5 * swiftness(body) + 2 * g_ * h) + 1e-3 * bounding_radius_[body];
+  if (inactive_[body]) return 0;
+  const double struck = farther_.empty() ? 0 : farther_[body];
+  return h * (1.5 * swiftness(body) + 2 * g_ * h) + struck + 1e-3 * bounding_radius_[body];
 }
 
 // how fast points of one body pass those of another, at most
@@ -191,7 +209,7 @@ void SpaceIterative::find(StepPart<D> step) {
   bounds_.resize(n), margin_.resize(n), swing_.resize(n), touches_.clear();
   known_.swap(features_), features_.clear();
   // the first substep begins where the step does: of what has been found for the step, what is near enough
-  const bool same = number == 0 && step.h < found_for_ && inactive_ == inactive_then_;
+  const bool same = number == 0 && step.h < found_for_ && inactive_ == inactive_then_ && !too_fast();
   found_for_ = step.h;
   for (int i = 0; i < n; ++i) {
     bounds_[i] = bounds(model_.bodies[i].shape, stances_[i]);
@@ -669,6 +687,23 @@ void SpaceIterative::report_contacts(State<D>& state, double h) const {
   for (const ContactConstraint& touch : touches_) state.contacts.push_back(contact(touch, h));
   std::inplace_merge(state.contacts.begin(), state.contacts.begin() + std::ptrdiff_t(kept),
                      state.contacts.end(), [](const auto& p, const auto& q) { return p.key < q.key; });
+}
+
+// a contact as the state keeps it
+Contact<3> SpaceIterative::contact(const ContactConstraint& touch, double h) const {
+  Contact<D> it;
+  it.key = touch.key, it.point = touch.point, it.normal = touch.n, it.gap = touch.gap;
+  const Vec<D> impulse = touch.normal_impulse * touch.n + touch.tangent_impulse;
+  it.force = impulse / h;
+  if (touch.bounces && touch.least > 0) it.impulse = impulse;
+  it.impulse += touch.impact_impulse;
+  it.touching =
+      touch.normal_impulse <= 0 ? ContactMode::open
+      : std::sqrt(touch.tangent_impulse.squaredNorm()) < touch.mu * touch.normal_impulse * (1 - 1e-9)
+          ? ContactMode::stick
+          : ContactMode::slide;
+  if (it.touching == ContactMode::open && !touch.impact_impulse.isZero(0)) it.touching = ContactMode::slide;
+  return it;
 }
 
 }  // namespace obscura::sim

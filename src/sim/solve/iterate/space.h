@@ -55,7 +55,9 @@ class SpaceIterative final : public Iterative<3> {
   void correct_overlaps(StepPart<D> part) override;
   void finish_substep(StepPart<D> part) override;
   void list_touching(StepPart<D> part, std::vector<std::pair<int, int>>& pairs) const override;
-  void find_equilibrium(std::span<Sleep<D>::Island> islands, State<D>& state, double h) override;
+  int begin_rest(const Sleep<D>::Island& island, const State<D>& state, double h) override;
+  void iterate_rest(int i) override;
+  void finish_rest(const Sleep<D>::Island& island, State<D>& state, double h) override;
 
   using ContactConstraint = sim::ContactConstraint<D>;
 
@@ -97,6 +99,7 @@ class SpaceIterative final : public Iterative<3> {
   };
 
   void prepare(const State<D>& state, double t, double h);
+  bool too_fast() const;
   void find(StepPart<D> step);
   void find_near();
   bool stays_apart(const Apart& apart, int a, int b, double margin) const;
@@ -168,16 +171,16 @@ class SpaceIterative final : public Iterative<3> {
   double normal_response(const ContactConstraint& touch) const;
   void report_contacts(State<D>& state, double h) const;
   Contact<D> contact(const ContactConstraint& touch, double h) const;
-  void fall_from_rest(std::span<const Sleep<D>::Island> islands, double h);
-  double swiftness(int body) const;
 
   MayTouch<D> may_touch_;
   BroadPhase<D> broad_;
   Response<D> response_;
   std::vector<Contact<D>> near_;
   EnergyGuard<D> energy_guard_;
-  std::vector<double> farther_;  // kinematic bodies: how far they get from where their velocity takes them, m
-  std::vector<double> bounding_radius_, width_;  // of bodies, m
+  // bodies, m: how far kinematic ones get from where their velocity takes them, and others where these
+  // strike them; empty: none are kinematic
+  std::vector<double> farther_;
+  std::vector<double> width_;  // of bodies, m
   std::vector<char> round_;
   std::vector<Contact<D>> impulses_;  // of the substeps before
 
@@ -202,10 +205,9 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<Vec<D>> x_, x_free_, v_free_;
   std::vector<Orientation<D>> turn_, turn_free_;
   std::vector<AngularVec<D>> w_free_;
-  std::vector<char> closing_, ripe_, on_joints_;  // the last: of those that rest
-  std::vector<int> components_;                   // and of their joints
+  std::vector<char> closing_;
+  std::vector<int> components_;  // of joints: those with bodies that closing_ names
   Islands islands_;
-  std::vector<PointBody<D>> kept_;
   std::vector<double> responses_;                   // of the touches that are pushed apart, 1/kg
   std::vector<double> parted_;                      // impulses that push touches apart, of unit time, kg m
   std::vector<double> before_, gained_, returned_;  // of each island's impacts, J

@@ -228,7 +228,9 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
     if (inactive_[i] && drives_.number(i) < 0) continue;
     fastest_[i].gain = std::sqrt((v_free_[i] - stances_[i].v).squaredNorm());
     const int k = turning(state, i);
-    if (k >= 0 && drives_.number(i) < 0 && model_.bodies[i].turns()) {
+    if (k >= 0 && drives_.number(i) >= 0) {
+      fastest_[i].turns = std::sqrt((w_free_[k] - stances_[i].w).squaredNorm());
+    } else if (k >= 0 && model_.bodies[i].turns()) {
       const AngularVec<D>& inertia = model_.bodies[i].inertia;
       const Rotation<D>&from = stances_[i].room_from_body, to = rotation<D>(turn_free_[k]);
       const AngularVec<D> ends = carried_spin<D>(inertia, to, from, w_free_[k]);

@@ -21,6 +21,8 @@ constexpr double kExactly = 1e-12;       // of how fast bodies of an island pass
 constexpr int kExactTouches = 2000;      // within so many touches times iterations
 constexpr double kUneven = 50;           // masses of an island that is solved exactly, most to least
 constexpr int kShedding = 5;             // sweeps
+constexpr int kRestIterations = 400;     // iterations of an island at rest
+constexpr double kClosedGap = 1e-6;      // of the narrower body: so near it bears
 
 int settling_budget(int touches) {
   return touches <= kFewTouches
@@ -165,6 +167,37 @@ void SpaceIterative::shed_gains() {
       push(touch, back);
     }
   }
+}
+
+// --- islands at rest (sim/solve/iterate/equilibrium.cpp)
+
+int SpaceIterative::begin_rest(const Sleep<D>::Island& island, const State<D>& state, double h) {
+  some_.clear();
+  for (const int contact : island.contacts) {
+    const auto at =
+        std::lower_bound(touches_.begin(), touches_.end(), state.contacts[contact].key,
+                         [](const auto& touch, const ContactKey& key) { return touch.key < key; });
+    some_.push_back(int(at - touches_.begin()));
+    at->least = at->gap * at->per_width < kClosedGap ? 0 : -at->gap / h;
+    push(*at, at->normal_impulse * at->n + at->tangent_impulse);
+  }
+  batches_.build(touches_, some_, moving_);
+  settling_.begin(touches_, some_, moving_, {});
+  for (Settling::Island& its : settling_.islands) its.follows = !island.jointed;
+  batches_.set_islands(settling_);
+  batches_.begin_directions();
+  return kRestIterations;
+}
+
+void SpaceIterative::iterate_rest(int i) {
+  batches_.iterate(moving_, i % 2 == 0);
+  if (i % 2 == 0) batches_.follow_directions(moving_, settling_);
+}
+
+void SpaceIterative::finish_rest(const Sleep<D>::Island& island, State<D>& state, double h) {
+  batches_.store(touches_);
+  for (std::size_t i = 0; i < some_.size(); ++i)
+    state.contacts[island.contacts[i]] = contact(touches_[some_[i]], h);
 }
 
 }  // namespace obscura::sim
