@@ -110,6 +110,9 @@ TEST(MovedMany, WhatSticksToWhatTurnsKeepsItsPlaceOnIt) {
     }
     EXPECT_LT(off[0], 1e-4) << space;
     EXPECT_LT(off[1], off[0] / 3.5) << space;
+  }
+}
+
 // A platform, or a bar, of which `motion` is said, and two balls, the second at `beside` of the first.
 std::string there_and_back(bool space, const std::string& solver, const std::string& motion, double x,
                            double y, double beside) {
