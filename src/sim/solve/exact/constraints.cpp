@@ -339,15 +339,16 @@ bool ExactSolver<D>::jammed() const {
   return most > 0 && most > kJam * loads();
 }
 
+// whether a constraint in such a mode is held
 template <int D>
-bool ExactSolver<D>::active(const Constraint& constraint) const {
+bool ExactSolver<D>::holds(const Constraint& constraint, ModeKind kind) {
   switch (constraint.kind) {
     case Constraint::Kind::joint:
       return true;
     case Constraint::Kind::contact:
-      return modes_[constraint.block].kind != ModeKind::open;
+      return kind != ModeKind::open;
     default:
-      return modes_[constraint.block].kind == ModeKind::free;
+      return kind == ModeKind::free;
   }
 }
 

@@ -22,13 +22,10 @@ constexpr double kFine = 0.25;      // of the thinner body: how far two may move
 constexpr int kMostLooks = 200000;  // of a couple in an interval
 constexpr double kSteepest = 2.5;  // of its way: how fast one goes in its interval, at most (Hermite's cubic)
 constexpr int kMostRoots = 100;
-constexpr double kStraight = 0.8;  // of an interval cut at a release: earlier releases in it are ignored
-constexpr double kBeyond = 1e-12;  // of what a joint bears
-constexpr double kSlight = 1e-6;   // of the largest force: a contact may pull so much before it is released
-constexpr double kWild = 8;        // times all loads: a contact that pulls so much let go long before
+constexpr double kStraight = 0.8;     // of an interval cut at a release: earlier releases in it are ignored
+constexpr double kBeyond = 1e-12;     // of what a joint bears
 constexpr double kShorter = 1.0 / 8;  // of an interval that is too long by far
 constexpr int kMostShorter = 9;       // times one after another, where numbers are not finite
-constexpr double kFar = 4;            // a ratio of two lengths, of which the geometric mean is tried
 
 }  // namespace
 
@@ -255,41 +252,6 @@ double ExactSolver<D>::stopping_time(Couple& which) {
   return first;
 }
 
-// How far the forces f of a contact are from its release: the normal force. In event mode, of a sticking
-// contact, how far they are from slipping.
-template <int D>
-double ExactSolver<D>::force_reserve(const Constraint& constraint, const Eigen::VectorXd& f) const {
-  const double pressed = f[constraint.first];
-  if (model_.collision != Collision::event || interval_.modes[constraint.block].kind != ModeKind::stick)
-    return pressed;
-  return blocks_[constraint.block].mu * pressed -
-         std::sqrt(f.segment(constraint.first + 1, D - 1).squaredNorm());
-}
-
-// The fraction of the interval at which the first contact separates or slips, by linear interpolation of the
-// forces. Slightly after the force has left the law, so that the contact is then found open or slipping. Much
-// later would be wrong: until then it pulls, or friction drives the slip.
-template <int D>
-double ExactSolver<D>::release_time(const Constraint*& which) {
-  double most = 0, first = kNever;
-  for (const Constraint& constraint : constraints_) {
-    if (constraint.kind == Constraint::Kind::contact)
-      most = std::max(most, interval_.forces[constraint.first]);
-  }
-  interval_.slight = kSlight * most;
-  for (const Constraint& constraint : constraints_) {
-    if (constraint.kind != Constraint::Kind::contact || !active(constraint)) continue;
-    if (std::find(progress_.unclear.begin(), progress_.unclear.end(), candidates_[constraint.of].key) !=
-        progress_.unclear.end())
-      continue;
-    const double begun = force_reserve(constraint, interval_.forces), now = force_reserve(constraint, f_);
-    if (begun <= interval_.slight || now >= -interval_.slight) continue;
-    const double part = (begun + 0.5 * interval_.slight) / (begun - now);
-    if (part < first) first = part, which = &constraint;
-  }
-  return first;
-}
-
 // The fraction of the interval at which the first joint is loaded beyond its strength, by linear
 // interpolation of the loads; a little later, so that it is found to be so. And what it holds.
 template <int D>
@@ -419,75 +381,6 @@ double ExactSolver<D>::tightening_time(const State<D>& state, double h, Couple& 
   return first;
 }
 
-// Whether a contact pulls by far more than anything bears: it let go long before. Where friction is great and
-// bodies slide along a curve, normal forces fall, or grow, exponentially:
-//   f_n' = -a + (2 mu v / R) f_n                       R  radius of the curve, a  by how the load turns
-// and stages far beyond their end answer numbers of any size.
-template <int D>
-bool ExactSolver<D>::pulls_wildly() const {
-  double most = interval_.loads;
-  for (const Constraint& constraint : constraints_) {
-    if (constraint.kind == Constraint::Kind::contact)
-      most = std::max(most, interval_.forces[constraint.first]);
-  }
-  for (const Constraint& constraint : constraints_) {
-    if (constraint.kind == Constraint::Kind::contact && active(constraint) &&
-        f_[constraint.first] < -kWild * most)
-      return true;
-  }
-  return false;
-}
-
-// the contact of that key where no other bears what it bears, so that its force is determined; nullptr: none
-template <int D>
-const typename ExactSolver<D>::Constraint* ExactSolver<D>::bears_alone(const ContactKey& key) const {
-  for (int part = 0; part < islands_; ++part) {
-    const Constraint* found = nullptr;
-    int others = 0;
-    for (const int i : island_members_[std::size_t(part)]) {
-      const Constraint& one = constraints_[std::size_t(i)];
-      if (one.kind != Constraint::Kind::contact || !active(one)) continue;
-      if (candidates_[one.of].key == key)
-        found = &one;
-      else
-        ++others;
-    }
-    if (found) return others == 0 ? found : nullptr;
-  }
-  return nullptr;
-}
-
-// The length of the interval after which the reserve of a contact is used up: it is not yet after `low`, and
-// was before `high`. Where the lengths are far apart their geometric mean is tried, then regula falsi,
-// Illinois. Leaves the state at the end of some length.
-template <int D>
-double ExactSolver<D>::release_length(State<D>& state, double t, const Constraint& which, double low,
-                                      double high) {
-  const double slight = 0.5 * interval_.slight;
-  const auto reserve_after = [&](double length) {
-    begin_again(state, t);
-    integrate(state, t, length);
-    const double reserve = all_finite(state) ? force_reserve(which, f_) : -1e300;
-    return std::isfinite(reserve) ? reserve + slight : -1e300;
-  };
-  double at_low = force_reserve(which, f_) + slight, at_high = reserve_after(high);
-  for (int i = 0; i < kMostRoots && high - low > 1e-15 * high; ++i) {
-    double length =
-        high > kFar * low ? std::sqrt(low * high) : (low * at_high - high * at_low) / (at_high - at_low);
-    if (!(length > low && length < high)) length = 0.5 * (low + high);
-    const double value = reserve_after(length);
-    if (std::abs(value) <= slight) return length;
-    if (value > 0) {
-      if (i > 0) at_high *= 0.5;
-      low = length, at_low = value;
-    } else {
-      if (i > 0) at_low *= 0.5;
-      high = length, at_high = value;
-    }
-  }
-  return high;
-}
-
 // back to where the interval began
 template <int D>
 void ExactSolver<D>::begin_again(State<D>& state, double t) {
@@ -533,7 +426,14 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
     bool passes = false;
     double part = std::min(opens, first_event(state, length, meets, passes));
     if (breaks < part) part = breaks, passes = false, meets = held;
-    if (part > 1) return length;
+    if (part > 1) {
+      if (model_.collision != Collision::event) return length;
+      const double lawful = lawful_length(state, t, length);
+      if (lawful == length) return length;
+      cut = true, progress_.passes = false, progress_.cut_by = {-1, -1};
+      progress_.released.reset();
+      return lawful;
+    }
     cut = true;
     progress_.passes = passes && part < opens;
     progress_.released.reset();
@@ -564,10 +464,8 @@ void ExactSolver<D>::integrate(State<D>& state, double t, double h) {
 
 template double ExactSolver<2>::advance_to_event(State<2>&, double, double, bool&);
 template void ExactSolver<2>::find_contacts(const State<2>&, double);
-template double ExactSolver<2>::force_reserve(const Constraint&, const Eigen::VectorXd&) const;
 template double ExactSolver<3>::advance_to_event(State<3>&, double, double, bool&);
 template void ExactSolver<3>::find_contacts(const State<3>&, double);
-template double ExactSolver<3>::force_reserve(const Constraint&, const Eigen::VectorXd&) const;
 template double ExactSolver<2>::gap_of(const ContactKey&, double);
 template double ExactSolver<3>::gap_of(const ContactKey&, double);
 

@@ -283,9 +283,10 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
       for (ConeMode<D>& mode : interval_.modes) {
         if (mode.kind == ModeKind::at_friction_limit) mode.kind = ModeKind::stick;
       }
-      if (D > 2) begin_slip_directions(state, t + done, h - done);
+      const double most = D > 2 ? begin_slip_directions(state, t + done, h - done) : h - done;
       const std::size_t forced = progress_.forced.size();
-      length = advance_to_event(state, t + done, h - done, cut);
+      length = advance_to_event(state, t + done, most, cut);
+      if (!cut && most < h - done) cut = progress_.passes = true;
       held_again = progress_.forced.size() > forced && !progress_.forced_again;
       if (length > 0) note_contacts(done, done + length);
       pose_driven(t + done + length);

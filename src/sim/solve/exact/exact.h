@@ -265,7 +265,10 @@ class ExactSolver final : public ContactSolver<D>, private System {
   double loads() const;
   bool jammed() const;
   void warm_start_rows(double h);
-  bool active(const Constraint& constraint) const;
+  static bool holds(const Constraint& constraint, ModeKind kind);
+  bool active(const Constraint& constraint) const {
+    return holds(constraint, modes_[std::size_t(constraint.block)].kind);
+  }
   double row_velocity(int row) const;
   double row_acceleration(int row, std::span<const double> rate) const;
   void add_accelerations(int row, double f, std::span<double> rate) const;
@@ -279,7 +282,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void record_chain_forces();
 
   // slip.cpp
-  void begin_slip_directions(State<D>& state, double t, double h);
+  double begin_slip_directions(State<D>& state, double t, double h);
   void aim_slow_slips(State<D>& state, double t, double h);
   void turn_slip_directions();
 
@@ -314,11 +317,6 @@ class ExactSolver final : public ContactSolver<D>, private System {
   double closing_time(const State<D>& state, double h, Couple couple);
   double tightening_time(const State<D>& state, double h, Couple& first);
   double stopping_time(Couple& first);
-  double force_reserve(const Constraint& constraint, const Eigen::VectorXd& f) const;
-  double release_time(const Constraint*& which);
-  bool pulls_wildly() const;
-  const Constraint* bears_alone(const ContactKey& key) const;
-  double release_length(State<D>& state, double t, const Constraint& which, double low, double high);
   void begin_again(State<D>& state, double t);
   double breaking_time(const State<D>& state, Couple& which) const;
   double travel(const State<D>& state, int body, double h) const;
@@ -330,6 +328,15 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void near_contacts(const std::vector<BodyMotion<D>>& at, Couple couple, double margin, Found&& found);
   BodyMotion<D> pose_at(const State<D>& state, int body, double h, double part);
   double force_couple(Couple couple);
+
+  // releases.cpp
+  double force_reserve(const Constraint& constraint, const Eigen::VectorXd& f) const;
+  double release_time(const Constraint*& which);
+  bool pulls_wildly() const;
+  const Constraint* bears_alone(const ContactKey& key) const;
+  double release_length(State<D>& state, double t, const Constraint& which, double low, double high);
+  double let_go_at(State<D>& state, double t);
+  double lawful_length(State<D>& state, double t, double length);
 
   // rails.cpp
   bool has_rails(int body) const {

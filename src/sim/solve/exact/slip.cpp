@@ -23,14 +23,32 @@ constexpr double kSlowSlip =
 // four vertices, the directions take a thousand iterations.
 constexpr double kEnough = 1e-7;
 constexpr int kSlipPatience = 300;
-constexpr double kStops = 1e-5;  // of what friction takes away from the slip in a step: no slip
+constexpr double kShortest = 1.0 / 256;  // of a step: how long a slip may be slow under `event`
+constexpr double kStops = 1e-5;          // of what friction takes away from the slip in a step: no slip
 
 }  // namespace
 
-// the ways of all contacts that slide at this instant, of `h` (s) that are left
+// The ways of all contacts that slide at this instant, of `h` (s) that are left. Answers how much of it may
+// be gone at once: under `event` no slip is slow but for a short time.
 template <int D>
-void ExactSolver<D>::begin_slip_directions(State<D>& state, double t, double h) {
+double ExactSolver<D>::begin_slip_directions(State<D>& state, double t, double h) {
   bool any = false;
+  double length = h;
+  if (model_.collision == Collision::event) {
+    const double shortest = kShortest / value(model_.rate);
+    for (const Constraint& constraint : constraints_) {
+      if (constraint.kind != Constraint::Kind::contact ||
+          interval_.modes[constraint.block].kind != ModeKind::slide)
+        continue;
+      double slip2 = 0, most = 0;
+      for (int row = constraint.first + 1; row < constraint.first + D; ++row)
+        slip2 += row_velocity(row) * row_velocity(row), most = std::max(most, self_coupling(row));
+      const double slows = blocks_[constraint.block].mu * f_[constraint.first] * most;
+      if (std::sqrt(slip2) < kSlowSlip * slows * length)
+        length = std::min(length, std::max(std::sqrt(slip2) / (kSlowSlip * slows), shortest));
+    }
+    h = length;
+  }
   for (Constraint& constraint : constraints_) {
     constraint.slip.setZero(), constraint.slow = false;
     if (constraint.kind != Constraint::Kind::contact ||
@@ -49,6 +67,7 @@ void ExactSolver<D>::begin_slip_directions(State<D>& state, double t, double h) 
     any = any || constraint.slow;
   }
   if (any) aim_slow_slips(state, t, h);
+  return length;
 }
 
 // the ways of those that are slow, by the friction of an implicit step
@@ -104,9 +123,9 @@ void ExactSolver<D>::turn_slip_directions() {
   }
 }
 
-template void ExactSolver<2>::begin_slip_directions(State<2>&, double, double);
+template double ExactSolver<2>::begin_slip_directions(State<2>&, double, double);
 template void ExactSolver<2>::turn_slip_directions();
-template void ExactSolver<3>::begin_slip_directions(State<3>&, double, double);
+template double ExactSolver<3>::begin_slip_directions(State<3>&, double, double);
 template void ExactSolver<3>::turn_slip_directions();
 
 }  // namespace obscura::sim

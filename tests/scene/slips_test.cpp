@@ -1,0 +1,128 @@
+// Under `event` a slip begins, turns and ends at its own time, however many contacts share a load: scenes
+// against closed forms, at few steps a second and many.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <variant>
+
+#include "scene/scene.h"
+#include "sim/step/run.h"
+
+namespace obscura::scene {
+namespace {
+
+constexpr double kRounding = 1e-12;  // m, of some metres and 600 steps
+
+// bodies of a room after some time, g = 10 m/s^2
+sim::Snapshot after(double t, bool space, int rate, const std::string& bodies) {
+  const std::string text =
+      fmt::format("[physics]\ncollision = \"event\"\nrate = {}\n[room]\nsize = {}\ngravity = {}\n", rate,
+                  space ? "[40, 8, 40]" : "[40, 8]", space ? "[0, -10, 0]" : "[0, -10]");
+  const auto run = parse(text + bodies, "a.toml").run();
+  auto found = run->at(*sim::from_double(t));
+  if (const auto* trouble = std::get_if<sim::Trouble>(&found)) {
+    ADD_FAILURE() << trouble->what << ": " << trouble->likely;
+    return {};
+  }
+  return std::get<sim::Snapshot>(found);
+}
+
+// A force along x that is 5 N at t0 and grows by 2 N a second, against friction of at most 5 N on 1 kg:
+//   x = (t - t0)^3 / 3
+// where the slip begins within a step, and where it begins with one.
+TEST(Slips, BeginWhereFrictionIsUsedUp) {
+  const std::string box = "[[box]]\nname = \"b\"\nsize = [0.4, 0.2{1}]\nposition = [2, {0}{2}]\nmass = 1\n";
+  const auto rubbing = [&](bool space) {
+    return fmt::format(fmt::runtime(box), 0.1, space ? ", 0.3" : "", space ? ", 0" : "") +
+           "friction = 0.5\nelasticity = 0\n";
+  };
+  const auto held = [&](bool space, const std::string& by) {
+    return fmt::format(fmt::runtime(box), 1, space ? ", 0.3" : "", space ? ", 0" : "") +
+           fmt::format("[[joint]]\ntype = \"slider\"\nbetween = [\"b\", \"room\"]\naxis = {}\n{}\n",
+                       space ? "[1, 0, 0]" : "[1, 0]", by);
+  };
+  for (const bool space : {false, true}) {
+    const std::string point =
+        fmt::format("[[particle]]\nname = \"b\"\nposition = {}\nmass = 1\nfriction = 0.5\nelasticity = 0\n",
+                    space ? "[2, 0, 0]" : "[2, 0]");
+    for (const std::string& body :
+         {point, rubbing(space), rubbing(space) + "rotation = false\n", held(space, "friction = 5"),
+          held(space, "motor = { speed = 0, most = 5 }")}) {
+      for (const int rate : {50, 600}) {
+        for (const double t0 : {0.1037, 0.5}) {
+          for (const double sign : {1.0, -1.0}) {
+            const sim::Snapshot at =
+                after(t0 + 1.5, space, rate,
+                      body + fmt::format("[[force]]\nof = \"b\"\ncomponents = [\"{}*(5 + "
+                                         "2*(t - {})) \", \"0\"{}]\n",
+                                         sign, t0, space ? ", \"0\"" : ""));
+            EXPECT_NEAR(at.bodies[0].position.x(), 2 + sign * 1.125, kRounding)
+                << body << space << " " << rate << " " << t0 << " " << sign;
+          }
+        }
+      }
+    }
+  }
+}
+
+// A load on a rope that is lifted by 20 N a second is weightless after half a second, and then free:
+//   y = y0 + 20 (t - 0.5)^3 / 6
+TEST(Slips, ARopeLetsGoWhereItNoLongerPulls) {
+  for (const bool space : {false, true}) {
+    for (const int rate : {60, 70, 600}) {
+      const char* z = space ? ", 0" : "";
+      const sim::Snapshot at =
+          after(1.1, space, rate,
+                fmt::format("[[ball]]\nname = \"b\"\nradius = 0.1\nmass = 1\nposition = [2, 1{0}]\n"
+                            "[[joint]]\ntype = \"rope\"\nbetween = [\"b\", [2, 3{0}]]\n"
+                            "[[force]]\nof = \"b\"\ncomponents = [\"0\", \"20*t\"{1}]\n",
+                            z, space ? ", \"0\"" : ""));
+      EXPECT_NEAR(at.bodies[0].position.y(), 1 + 20 * 0.6 * 0.6 * 0.6 / 6, kRounding) << space << rate;
+    }
+  }
+}
+
+// A spring whose far end goes at 0.3 m/s pulls a block of 1 kg by jerks: it sticks until k v t is what
+// friction bears, and then x = v t - v/w sin(w t), w^2 = k/m, which has no speed once a period and at once
+// goes on.
+TEST(Slips, AStopAtTheLimitOfFrictionIsNone) {
+  const double k = 20, v = 0.3, w = std::sqrt(k), begins = 0.4 * 10 / (k * v), t = 3.9 - begins;
+  const std::string bodies =
+      "[[box]]\nname = \"b\"\nsize = [0.4, 0.2]\nmass = 1\nposition = [3, 0.1]\nfriction = 0.4\nelasticity = "
+      "0\n"
+      "[[particle]]\nname = \"hand\"\nposition = [5, 0.1]\nmotion = { x = \"0.3*t\" }\n"
+      "[[spring]]\nbetween = [\"b\", \"hand\"]\nstiffness = 20\n";
+  const auto off = [&](int rate) {
+    return after(3.9, false, rate, bodies).bodies[1].position.x() - (3 + v * t - v / w * std::sin(w * t));
+  };
+  EXPECT_NEAR(off(60), 0, 1e-7);
+  EXPECT_NEAR(off(600), 0, 1e-11);  // 1e-7 less four powers of ten
+}
+
+// A puck that is pushed across a slope steeper for it than friction allows, by n = mu/tan(slope) times: with
+// a the pull along the slope, v its speed and u what of it goes down,
+//   n v + u = n v0 - (n^2 - 1) a t
+// until it stops. It turns downhill ever faster as it gets slower.
+TEST(Slips, APuckAcrossASlopeTurnsAsItStops) {
+  const double n = 2, a = 2, v0 = 3;
+  for (const std::string shape : {"[[particle]]\nposition = [0, 0, 0]\n",
+                                  "[[box]]\nsize = [0.4, 0.2, 0.3]\nposition = [0, 0.1, 0]\n"}) {
+    for (const int rate : {60, 600}) {
+      const std::string bodies = shape +
+                                 "velocity = [0, 0, 3]\nmass = 1\nfriction = 0.4\nelasticity = 0\n"
+                                 "[[force]]\ncomponents = [\"2\", \"0\", \"0\"]\n";
+      for (const double t : {0.5, 0.9, 0.99, 0.999}) {
+        const sim::Vec3 v = after(t, true, rate, bodies).bodies[0].velocity;
+        EXPECT_NEAR(n * v.norm() + v.x(), n * v0 - (n * n - 1) * a * t, 1e-6) << shape << rate << " " << t;
+      }
+      const sim::Vec3 v = after(1.01, true, rate, bodies).bodies[0].velocity;
+      EXPECT_NEAR(v.norm(), 0, 1e-12) << shape << rate;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace obscura::scene
