@@ -12,6 +12,8 @@ namespace obscura::scene {
 
 namespace {
 
+constexpr std::size_t kMostWords = 12;  // that are listed where no key is near
+
 std::string owner_text(const std::string& owner) {
   if (owner.empty()) return "a scene";
   const Key* it = key(owner);
@@ -22,10 +24,11 @@ std::string owner_text(const std::string& owner) {
   return it->form == Form::tables ? "[[" + owner + "]]" : "[" + owner + "]";
 }
 
-// other tables with a key of this name
-std::string elsewhere(std::string_view last) {
+// other tables with a key of this name; `table` tells whether a table is meant
+std::string elsewhere(std::string_view last, bool table) {
   for (const Key& each : keys())
-    if (each.last() == last && each.owner().find('.') == std::string_view::npos)
+    if (each.last() == last && each.owner().find('.') == std::string_view::npos &&
+        (table || !(each.owner().empty() && (each.form == Form::tables || each.form == Form::table))))
       return each.owner().empty() ? "it belongs at the top, before the first [table]"
                                   : "it belongs in " + owner_text(std::string(each.owner()));
   return "";
@@ -137,16 +140,17 @@ class Tables : private Reporter {
       if (each->form == Form::tables) many.push_back("[[" + std::string(each->last()) + "]]");
     }
     const std::string_view near = nearest(entry.key, words);
+    const bool is_table = several || entry.node.is_table();
     std::string hint;
-    if (const std::string plural = entry.key + 's'; owner.empty() && !elsewhere(plural).empty()) {
-      hint = "; '" + plural + "': " + elsewhere(plural);
+    if (const std::string plural = entry.key + 's'; owner.empty() && !elsewhere(plural, true).empty()) {
+      hint = "; '" + plural + "': " + elsewhere(plural, true);
     } else if (const std::string kind = kind_of(entry.key); owner.empty() && !kind.empty()) {
       hint = "; did you mean " + kind + "?";
     } else if (!near.empty()) {
       hint = fmt::format("; did you mean '{}'?", near);
-    } else if (const std::string other = elsewhere(entry.key); !other.empty()) {
+    } else if (const std::string other = elsewhere(entry.key, is_table); !other.empty()) {
       hint = "; " + other;
-    } else if (words.size() <= 8) {
+    } else if (words.size() <= kMostWords) {
       hint = fmt::format("; it has {}", fmt::join(words, ", "));
     } else if (owner.empty() && several) {
       hint = fmt::format("; there are {}", fmt::join(many, ", "));

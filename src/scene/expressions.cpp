@@ -1,6 +1,7 @@
 #include "scene/expressions.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +10,30 @@ namespace obscura::scene {
 
 namespace {
 
+constexpr std::size_t kMostPlain = 30, kMostOfThings = 6;  // names that a message lists
+
 // where a column of an expression is in the file, if that is known
 Place column_of(const Node& node, int column) {
   Place place = node.place;
   if (node.inside > 0) place.column += node.inside + column - 1;
   return place;
+}
+
+// the names that an expression may read: all plain ones, and some of bodies and joints
+std::string what_there_is(const std::vector<std::string>& names) {
+  const auto functions = sim::expression_functions();
+  std::vector<std::string_view> plain, of_things;
+  for (const std::string& name : names) {
+    if (name.find('.') != std::string::npos)
+      of_things.push_back(name);
+    else if (std::find(functions.begin(), functions.end(), name) == functions.end())
+      plain.push_back(name);
+  }
+  if (plain.size() > kMostPlain) return "";
+  const bool more = of_things.size() > kMostOfThings;
+  if (more) of_things.resize(kMostOfThings);
+  plain.insert(plain.end(), of_things.begin(), of_things.end());
+  return plain.empty() ? "" : fmt::format("; there are {}{}", fmt::join(plain, ", "), more ? ", ..." : "");
 }
 
 }  // namespace
@@ -34,6 +54,7 @@ void complain(const Node& node, std::string_view key, const sim::ExpressionFault
   std::string hint = fault.word.empty() ? "" : did_you_mean(fault.word, words);
   if (hint.empty() && !fault.word.empty())
     hint = did_you_mean(fault.word, std::vector<std::string_view>(names.begin(), names.end()));
+  if (hint.empty() && !fault.word.empty() && !fault.function) hint = what_there_is(names);
   complaints.add(column_of(node, fault.column),
                  fmt::format("'{}', column {}: {}{}", key, fault.column, fault.message, hint));
 }

@@ -143,7 +143,7 @@ std::vector<Key> rows() {
 
       {.path = "contact", .form = table, .doc = "Which bodies may touch."},
       {.path = "contact.ignore", .form = pairs, .fallback = "[]",
-       .doc = "Pairs that do not touch each other: groups, or bodies by their names; one may be paired with itself.",
+       .doc = "Pairs that do not touch each other: groups, or bodies by their names, each with the tracks on it; one may be paired with itself.",
        .example = "[[\"stones\", \"frame\"]]"},
 
       {.path = "any.name", .form = name, .absent = "`KIND[0]`, `KIND[1]`, ... in the order of the file",
@@ -278,7 +278,7 @@ std::vector<Key> rows() {
       {.path = "joint.joints", .form = couple, .absent = "it is no gear",
        .doc = "For a gear: the names of two joints, each a pin, in space a hinge, a slider, or in space a screw. Where one body, or the room, bears both, teeth push the wheels and their axles bear that.", .example = "[\"axle\", \"pinion_axle\"]"},
       {.path = "joint.ratio", .form = number, .absent = "it is no gear",
-       .doc = "For a gear: what the second joint's angle is times to be the first's, both from the start: minus the ratio of the radii where the teeth are outside. Of a slider and a pin: metres a radian, the pinion's radius.",
+       .doc = "For a gear: what the second joint's angle is times to be the first's, both from the start: minus the ratio of the radii where the teeth are outside. Of a slider and a pin: metres a radian, the pinion's radius. A screw counts by its angle, in radians.",
        .example = "-3"},
       {.path = "joint.limits", .form = limits, .absent = "none",
        .doc = "Lowest and highest angle (degrees) of a pin, in space of a hinge, or position (m) of a slider or a screw: first end relative to second, 0 at the start.",

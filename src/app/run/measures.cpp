@@ -31,7 +31,8 @@ constexpr std::array<std::pair<std::string_view, Over>, 6> kOver{{{"end", Over::
                                                                   {"argmax", Over::argmax},
                                                                   {"argmin", Over::argmin}}};
 constexpr std::string_view kHashName = "hash";
-constexpr std::size_t kFew = 200;  // bodies whose quantities are all offered where a name is not known
+constexpr std::size_t kFew = 200;      // bodies whose quantities are all offered where a name is not known
+constexpr std::size_t kMostNames = 8;  // that are listed where no name is near
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
@@ -127,6 +128,16 @@ std::function<double(const sim::Snapshot&)> reader(const Question& asked, const 
   std::vector<std::string_view> names(more.begin(), more.end());
   for (const Column& column : all) names.push_back(column.name);
   std::string meant = scene::did_you_mean(asked.path, names);
+  if (meant.empty()) {
+    // what else there is of the same thing
+    const std::string whose = asked.path.substr(0, asked.path.rfind('.') + 1);
+    std::vector<std::string_view> its;
+    for (const std::string_view name : names)
+      if (!whose.empty() && name.starts_with(whose) && its.size() < kMostNames &&
+          std::find(its.begin(), its.end(), name) == its.end())
+        its.push_back(name);
+    if (!its.empty()) meant = fmt::format("; there are {}", fmt::join(its, ", "));
+  }
   if (meant.empty()) meant = "; `obscura states --format csv` heads its columns with the names";
   throw UsageError(fmt::format("--measure {}: states have no '{}'{}", asked.text, asked.path, meant));
 }
