@@ -91,6 +91,9 @@ class Program {
   /// How many slots its evaluation is given: one more than the highest variable.
   int slots() const { return slots_; }
   bool reads(int slot) const;
+  /// What in it goes by steps with a variable that is the same for all bodies, and with no other: comparisons,
+  /// signs and floors, one output each.
+  Program jumps(int slot) const;
 
  private:
   friend class Evaluation;

@@ -58,7 +58,8 @@ Program::Program(const ExpressionGraph& graph, std::span<const int> outputs) {
     for (int k = 0; k < count; ++k) {
       if (std::find(all.begin(), all.begin() + k, all[std::size_t(k)]) != all.begin() + k) continue;
       const ExpressionGraph::Node& read = graph[all[std::size_t(k)]];
-      if (last[std::size_t(all[std::size_t(k)])] == i && !read.uniform && read.operation != Operation::variable)
+      if (last[std::size_t(all[std::size_t(k)])] == i && !read.uniform &&
+          read.operation != Operation::variable)
         free.push_back(place[std::size_t(all[k])]);
     }
   }
@@ -72,6 +73,31 @@ bool Program::reads(int slot) const {
     });
   };
   return slot < slots_ && (any(code_) || std::find(outputs_.begin(), outputs_.end(), slot) != outputs_.end());
+}
+
+Program Program::jumps(int slot) const {
+  using enum Operation;
+  Program made = *this;
+  made.code_.clear(), made.outputs_.clear();
+  const auto registers = std::size_t(registers_);
+  std::vector<char> known(registers), moves(registers);
+  for (const Number& it : numbers_) known[std::size_t(it.to - slots_)] = 1;
+  for (const Uniform& it : uniforms_)
+    if (it.slot == slot) known[std::size_t(it.to - slots_)] = moves[std::size_t(it.to - slots_)] = 1;
+  for (const Instruction& it : prelude_) {
+    bool all = true, any = false;
+    for (const int operand : {it.a, it.b, it.c}) {
+      if (operand < 0) continue;
+      all = all && known[std::size_t(operand - slots_)];
+      any = any || moves[std::size_t(operand - slots_)];
+    }
+    if (!all) continue;
+    known[std::size_t(it.to - slots_)] = 1, moves[std::size_t(it.to - slots_)] = any;
+    const bool steps = it.operation == less || it.operation == less_equal || it.operation == equal ||
+                       it.operation == not_equal || it.operation == sign || it.operation == Operation::floor;
+    if (any && steps) made.outputs_.push_back(it.to);
+  }
+  return made;
 }
 
 Evaluation::Evaluation(const Program& program)

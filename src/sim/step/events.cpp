@@ -187,7 +187,7 @@ std::optional<Trouble> Events<D>::partial_step(State<D>& state, double fraction)
   return advance(state, fraction);
 }
 
-// where the next time that changes something cuts the step; `to` where none does
+// where the next time that changes something cuts the step, or the script, or a jump; `to` where none does
 template <int D>
 double Events<D>::cut_after(const State<D>& state, double from, double to) const {
   double first = to;
@@ -197,7 +197,7 @@ double Events<D>::cut_after(const State<D>& state, double from, double to) const
     if (when.on != On::time || when.only_marks() || state.events.done[w] || at.step != state.step) continue;
     if (at.fraction > from && at.fraction < first) first = at.fraction;
   }
-  return first;
+  return stepper_->next_cut(state.step, from, first);
 }
 
 template <int D>

@@ -49,6 +49,7 @@ Stepper<D>::Stepper(const Model<D>& model)
       integrate_(sim::integrate(model.integrator)),
       handout_(model, paths_),
       blasts_(model),
+      jumps_(model),
       drives_(model),
       divergence_(model, paths_),
       dynamics_(model, paths_),
@@ -222,15 +223,23 @@ std::optional<Trouble> Stepper<D>::advance(State<D>& state, double from, double 
   }
 }
 
+// where a step that goes from one fraction to another is cut: at an edge of the script, at a jump of a
+// formula
+template <int D>
+double Stepper<D>::next_cut(std::int64_t step, double from, double to) {
+  if (bonded_) return to;
+  const auto edge = std::upper_bound(edges_.begin(), edges_.end(), TimeStamp{step, from},
+                                     [](TimeStamp at, const ScriptEvent& e) { return at < e.at; });
+  if (edge != edges_.end() && edge->at.step == step && edge->at.fraction < to) to = edge->at.fraction;
+  return jumps_.cut(step, from, to);
+}
+
 template <int D>
 std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, double fraction) {
   if (from == 0) state.touches.clear();
   const double h = step_length(model_.rate);
-  auto edge = std::upper_bound(edges_.begin(), edges_.end(), TimeStamp{state.step, from},
-                               [](TimeStamp at, const ScriptEvent& e) { return at < e.at; });
   while (from < fraction) {
-    const bool cut = edge != edges_.end() && edge->at.step == state.step && edge->at.fraction <= fraction;
-    const double to = cut ? edge->at.fraction : fraction;
+    const double to = next_cut(state.step, from, fraction);
     const double begun = time({state.step, from}, model_.rate), ended = time({state.step, to}, model_.rate);
     if (!contact_) plan(state);
     books_by_stage_ = !contact_ && dynamics_.size() == 0 && forces_.any();
@@ -252,8 +261,7 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
       if (!std::is_sorted(suspects_.begin(), suspects_.end())) std::sort(suspects_.begin(), suspects_.end());
       handout_.collide(state, suspects_, ended);
     }
-    if (cut) touch_script(state, edge->at);
-    while (cut && edge != edges_.end() && edge->at == TimeStamp{state.step, to}) ++edge;
+    if (to < 1) touch_script(state, {state.step, to});
     from = to;
   }
   if (fraction < 1) {

@@ -13,6 +13,7 @@
 #include "sim/motion/forward_dynamics.h"
 #include "sim/motion/integrator.h"
 #include "sim/solve/contact_solver.h"
+#include "sim/step/jumps.h"
 
 namespace obscura::sim {
 
@@ -75,6 +76,7 @@ class Stepper {
   };
 
   std::optional<Trouble> go(State<D>& state, double from, double to);
+  double next_cut(std::int64_t step, double from, double to);
   std::optional<Trouble> after_step(const State<D>& state);
   std::optional<Trouble> advance(State<D>& state, double from, double fraction);
   std::optional<Trouble> advance_pieces(State<D>& state, double from, double fraction);
@@ -100,6 +102,7 @@ class Stepper {
   std::unique_ptr<BondedBodies<D>> bonded_;  // of a model with bonds: all is done there
   std::unique_ptr<Releases<D>> releases_;    // of one that lets bodies go: likewise
   std::unique_ptr<Events<D>> events_;        // of one with conditions: likewise
+  Jumps<D> jumps_;
   Drives<D> drives_;
   DivergenceMonitor<D> divergence_;
   ForwardDynamics<D> dynamics_;
