@@ -14,9 +14,9 @@
 namespace obscura::scene {
 namespace {
 
-constexpr double kAround = 1e-10;  // m: 1e-9 of a step at 60 steps a second, times some m/s
+constexpr double kAroundJump = 1e-10;  // m: 1e-9 of a step at 60 steps a second, times some m/s
 
-sim::Snapshot after(double t, const std::string& text) {
+sim::Snapshot pushed_until(double t, const std::string& text) {
   const auto run = parse(text, "a.toml").run();
   auto found = run->at(*sim::from_double(t));
   if (const auto* trouble = std::get_if<sim::Trouble>(&found)) {
@@ -36,19 +36,20 @@ std::string pushed(bool space, const std::string& mode, int rate, const std::str
       rate, mode, space ? ", 8" : "", z, z, force, space ? ", \"0\"" : "");
 }
 
-constexpr const char* kModes[] = {"collision = \"contact\"", "collision = \"event\"",
-                                  "collision = \"handout\"", "solver = \"iterative\"",
-                                  "integrator = \"midpoint\""};
+constexpr const char* kJumpModes[] = {"collision = \"contact\"", "collision = \"event\"",
+                                      "collision = \"handout\"", "solver = \"iterative\"",
+                                      "integrator = \"midpoint\""};
 
 TEST(Jumps, APushEndsAtItsTime) {
-  for (const char* mode : kModes) {
+  for (const char* mode : kJumpModes) {
     for (const bool space : {false, true}) {
       for (const int rate : {60, 600}) {
         // within a step, where one begins, and not at all
         for (const double ends : {0.5037, 0.5, 7.0}) {
           const double to = std::min(ends, 2.0);
-          const sim::Snapshot at = after(2, pushed(space, mode, rate, fmt::format("if(t < {}, 3, 0)", ends)));
-          EXPECT_NEAR(at.bodies[0].position.x(), 1 + 1.5 * to * to + 3 * to * (2 - to), kAround)
+          const sim::Snapshot at =
+              pushed_until(2, pushed(space, mode, rate, fmt::format("if(t < {}, 3, 0)", ends)));
+          EXPECT_NEAR(at.bodies[0].position.x(), 1 + 1.5 * to * to + 3 * to * (2 - to), kAroundJump)
               << mode << space << rate << " " << ends;
         }
       }
@@ -58,12 +59,12 @@ TEST(Jumps, APushEndsAtItsTime) {
 
 // Stairs, 0, 1, 2 ... N for a third of a second each; a square wave; and two jumps within one step.
 TEST(Jumps, EachOfManyIsAtItsTime) {
-  for (const char* mode : kModes) {
+  for (const char* mode : kJumpModes) {
     for (const int rate : {60, 600}) {
       const auto speed = [&](const char* force) {
-        return after(2, pushed(false, mode, rate, force)).bodies[0].velocity.x();
+        return pushed_until(2, pushed(false, mode, rate, force)).bodies[0].velocity.x();
       };
-      EXPECT_NEAR(speed("floor(3*t)"), 15.0 / 3, kAround) << mode << rate;
+      EXPECT_NEAR(speed("floor(3*t)"), 15.0 / 3, kAroundJump) << mode << rate;
       // the scheme's own order is left: 4, of the midpoint 2
       EXPECT_NEAR(speed("(sin(7*t) > 0) * sin(7*t)"), (4 + 1 - std::cos(7 * 2 - 4 * std::numbers::pi)) / 7,
                   std::string(mode).ends_with("midpoint\"") ? 4e-4 * 60 * 60 / (rate * rate) : 1e-6)
@@ -81,18 +82,18 @@ TEST(Jumps, MotorsAndMotionsHaveThem) {
         "[physics]\nrate = {}\n[room]\nsize = [8, 8]\nwalls = \"none\"\ngravity = [0, 0]\n", rate);
     // 5 N until the motor has its speed, which changes in the midst of that
     const sim::Snapshot driven =
-        after(1, room +
-                     "[[box]]\nname = \"b\"\nsize = [0.2, 0.2]\nposition = [1, 1]\nmass = 1\n"
-                     "[[joint]]\ntype = \"slider\"\nbetween = [\"b\", \"room\"]\naxis = [1, 0]\n"
-                     "motor = { speed = \"if(t < 0.2037, 9, -9)\", most = 5 }\n");
+        pushed_until(1, room +
+                            "[[box]]\nname = \"b\"\nsize = [0.2, 0.2]\nposition = [1, 1]\nmass = 1\n"
+                            "[[joint]]\ntype = \"slider\"\nbetween = [\"b\", \"room\"]\naxis = [1, 0]\n"
+                            "motor = { speed = \"if(t < 0.2037, 9, -9)\", most = 5 }\n");
     const double v = 5 * 0.2037;
     EXPECT_NEAR(driven.bodies[0].velocity.x(), v - 5 * (1 - 0.2037), 1e-8) << rate;
-    const sim::Snapshot pulled =
-        after(1, room +
-                     "[[particle]]\nname = \"hand\"\nposition = [2, 1]\nmotion = { x = \"if(t < 0.2037, t, "
-                     "0.2037)\" }\n"
-                     "[[particle]]\nname = \"b\"\nposition = [1, 1]\nmass = 1\n"
-                     "[[spring]]\nbetween = [\"b\", \"hand\"]\nstiffness = 9\nrest_length = 1\n");
+    const sim::Snapshot pulled = pushed_until(
+        1, room +
+               "[[particle]]\nname = \"hand\"\nposition = [2, 1]\nmotion = { x = \"if(t < 0.2037, t, "
+               "0.2037)\" }\n"
+               "[[particle]]\nname = \"b\"\nposition = [1, 1]\nmass = 1\n"
+               "[[spring]]\nbetween = [\"b\", \"hand\"]\nstiffness = 9\nrest_length = 1\n");
     // x'' = 9 (s - x): x = t - sin(3 t)/3 until then, and swings about where the hand stands after
     const double s = 0.2037, x = s - std::sin(3 * s) / 3, u = 1 - std::cos(3 * s), t = 1 - s;
     EXPECT_NEAR(pulled.bodies[1].position.x(), 1 + s + (x - s) * std::cos(3 * t) + u / 3 * std::sin(3 * t),

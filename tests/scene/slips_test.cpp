@@ -17,7 +17,7 @@ namespace {
 constexpr double kRounding = 1e-12;  // m, of some metres and 600 steps
 
 // bodies of a room after some time, g = 10 m/s^2
-sim::Snapshot after(double t, bool space, int rate, const std::string& bodies) {
+sim::Snapshot slid_until(double t, bool space, int rate, const std::string& bodies) {
   const std::string text =
       fmt::format("[physics]\ncollision = \"event\"\nrate = {}\n[room]\nsize = {}\ngravity = {}\n", rate,
                   space ? "[40, 8, 40]" : "[40, 8]", space ? "[0, -10, 0]" : "[0, -10]");
@@ -55,10 +55,10 @@ TEST(Slips, BeginWhereFrictionIsUsedUp) {
         for (const double t0 : {0.1037, 0.5}) {
           for (const double sign : {1.0, -1.0}) {
             const sim::Snapshot at =
-                after(t0 + 1.5, space, rate,
-                      body + fmt::format("[[force]]\nof = \"b\"\ncomponents = [\"{}*(5 + "
-                                         "2*(t - {})) \", \"0\"{}]\n",
-                                         sign, t0, space ? ", \"0\"" : ""));
+                slid_until(t0 + 1.5, space, rate,
+                           body + fmt::format("[[force]]\nof = \"b\"\ncomponents = [\"{}*(5 + "
+                                              "2*(t - {})) \", \"0\"{}]\n",
+                                              sign, t0, space ? ", \"0\"" : ""));
             EXPECT_NEAR(at.bodies[0].position.x(), 2 + sign * 1.125, kRounding)
                 << body << space << " " << rate << " " << t0 << " " << sign;
           }
@@ -75,11 +75,11 @@ TEST(Slips, ARopeLetsGoWhereItNoLongerPulls) {
     for (const int rate : {60, 70, 600}) {
       const char* z = space ? ", 0" : "";
       const sim::Snapshot at =
-          after(1.1, space, rate,
-                fmt::format("[[ball]]\nname = \"b\"\nradius = 0.1\nmass = 1\nposition = [2, 1{0}]\n"
-                            "[[joint]]\ntype = \"rope\"\nbetween = [\"b\", [2, 3{0}]]\n"
-                            "[[force]]\nof = \"b\"\ncomponents = [\"0\", \"20*t\"{1}]\n",
-                            z, space ? ", \"0\"" : ""));
+          slid_until(1.1, space, rate,
+                     fmt::format("[[ball]]\nname = \"b\"\nradius = 0.1\nmass = 1\nposition = [2, 1{0}]\n"
+                                 "[[joint]]\ntype = \"rope\"\nbetween = [\"b\", [2, 3{0}]]\n"
+                                 "[[force]]\nof = \"b\"\ncomponents = [\"0\", \"20*t\"{1}]\n",
+                                 z, space ? ", \"0\"" : ""));
       EXPECT_NEAR(at.bodies[0].position.y(), 1 + 20 * 0.6 * 0.6 * 0.6 / 6, kRounding) << space << rate;
     }
   }
@@ -96,7 +96,8 @@ TEST(Slips, AStopAtTheLimitOfFrictionIsNone) {
       "[[particle]]\nname = \"hand\"\nposition = [5, 0.1]\nmotion = { x = \"0.3*t\" }\n"
       "[[spring]]\nbetween = [\"b\", \"hand\"]\nstiffness = 20\n";
   const auto off = [&](int rate) {
-    return after(3.9, false, rate, bodies).bodies[1].position.x() - (3 + v * t - v / w * std::sin(w * t));
+    return slid_until(3.9, false, rate, bodies).bodies[1].position.x() -
+           (3 + v * t - v / w * std::sin(w * t));
   };
   EXPECT_NEAR(off(60), 0, 1e-7);
   EXPECT_NEAR(off(600), 0, 1e-11);  // 1e-7 less four powers of ten
@@ -115,10 +116,10 @@ TEST(Slips, APuckAcrossASlopeTurnsAsItStops) {
                                  "velocity = [0, 0, 3]\nmass = 1\nfriction = 0.4\nelasticity = 0\n"
                                  "[[force]]\ncomponents = [\"2\", \"0\", \"0\"]\n";
       for (const double t : {0.5, 0.9, 0.99, 0.999}) {
-        const sim::Vec3 v = after(t, true, rate, bodies).bodies[0].velocity;
+        const sim::Vec3 v = slid_until(t, true, rate, bodies).bodies[0].velocity;
         EXPECT_NEAR(n * v.norm() + v.x(), n * v0 - (n * n - 1) * a * t, 1e-6) << shape << rate << " " << t;
       }
-      const sim::Vec3 v = after(1.01, true, rate, bodies).bodies[0].velocity;
+      const sim::Vec3 v = slid_until(1.01, true, rate, bodies).bodies[0].velocity;
       EXPECT_NEAR(v.norm(), 0, 1e-12) << shape << rate;
     }
   }
