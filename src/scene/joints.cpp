@@ -195,6 +195,12 @@ class Joining {
     const auto own = [&](double x) { return its_.angle ? radians(x) : x; };
     if (const Node* limits = fields_.given("limits"))
       it.lower = own(limits->list()[0].number()), it.upper = own(limits->list()[1].number());
+    if (const Node* limits = fields_.given("limits");
+        limits && D == 3 && its_.angle && std::max(-it.lower, it.upper) > std::numbers::pi)
+      return refuse(limits->place,
+                    "limits of a hinge in space lie from -180 to 180 degrees, for its angle counts no whole "
+                    "turns; in the plane they may "
+                    "be wider");
     if (const Node* given = fields_.given("motor"); given && !motor(*given, it)) return {};
     if (const Node* given = fields_.given("spring"); given && !coil(*given, it)) return {};
     if (kind_ == JointKind::screw) {

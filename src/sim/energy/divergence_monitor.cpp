@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "sim/constraint/joints/joint.h"
 #include "sim/energy/energy.h"
@@ -173,6 +174,42 @@ std::optional<Trouble> DivergenceMonitor<D>::check_joints(const State<D>& state,
           "its bodies move too far in a step, or its loop cannot close: raise physics.rate, or write "
           "physics.solver = \"direct\" where it is not"};
     }
+  }
+  return {};
+}
+
+template <int D>
+void DivergenceMonitor<D>::spring_angles(const State<D>& state, std::vector<double>& angles) const {
+  angles.clear();
+  if (D == 2) return;
+  const auto motion = [&](int body) { return body < 0 ? BodyMotion<D>{} : body_motion(state, body); };
+  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+    const Joint<D>& joint = model_.joints[i];
+    if (!joint.coil || joint.kind != JointKind::hinge) continue;
+    Row<D> row;
+    double angle = 0;
+    const bool whole = i >= state.broken.size() || !state.broken[i];
+    if (whole)
+      free_row(joint, motion(joint.a.body), motion(joint.b.body), AngularVec<D>(AngularVec<D>::Zero()), row,
+               angle);
+    angles.push_back(angle);
+  }
+}
+
+template <int D>
+std::optional<Trouble> DivergenceMonitor<D>::check_turns(const std::vector<double>& before,
+                                                         const State<D>& state, double t) const {
+  if (before.empty()) return {};
+  std::vector<double> now;
+  spring_angles(state, now);
+  std::size_t k = 0;
+  for (const Joint<D>& joint : model_.joints) {
+    if (!joint.coil || joint.kind != JointKind::hinge) continue;
+    if (std::fabs(now[k] - before[k]) > std::numbers::pi && now[k] != 0)
+      return Trouble{t, joint.name, "angle", "has come to half a turn",
+                     "the spring of a hinge in space counts no whole turns: make it stiffer, give the hinge "
+                     "limits, or build it in the plane, where pins count them"};
+    ++k;
   }
   return {};
 }

@@ -29,6 +29,12 @@ class DivergenceMonitor {
   /// so.
   std::optional<Trouble> check_energy(const State<D>& state, double t) const;
 
+  /// The angles of hinges with springs in space, which count no whole turns, rad; none in the plane.
+  void spring_angles(const State<D>& state, std::vector<double>& angles) const;
+  /// What such a spring does that has turned beyond half a turn, where `before` are its angles shortly
+  /// before.
+  std::optional<Trouble> check_turns(const std::vector<double>& before, const State<D>& state,
+                                     double t) const;
   /// The first unbroken joint whose equations are off by more than a hundredth of its size, or of a radian.
   std::optional<Trouble> check_joints(const State<D>& state, double t) const;
 

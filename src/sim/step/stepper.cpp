@@ -241,6 +241,7 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
   while (from < fraction) {
     const double to = next_cut(state.step, from, fraction);
     const double begun = time({state.step, from}, model_.rate), ended = time({state.step, to}, model_.rate);
+    divergence_.spring_angles(state, spring_angles_);
     if (!contact_) plan(state);
     books_by_stage_ = !contact_ && dynamics_.size() == 0 && forces_.any();
     if (!books_by_stage_) work_.open(state);
@@ -261,6 +262,7 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
       if (!std::is_sorted(suspects_.begin(), suspects_.end())) std::sort(suspects_.begin(), suspects_.end());
       handout_.collide(state, suspects_, ended);
     }
+    if (auto trouble = divergence_.check_turns(spring_angles_, state, ended)) return trouble;
     if (to < 1) touch_script(state, {state.step, to});
     from = to;
   }

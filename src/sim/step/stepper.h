@@ -120,6 +120,7 @@ class Stepper {
   std::vector<AngularVec<D>> base_;       // of a block, see sim/math/lie_step.h
   std::vector<double> d_, w_;
   std::vector<int> suspects_;
+  std::vector<double> spring_angles_;
   std::vector<int> by_handout_;  // bodies with that law in `contact` and `event` too
   Stages stages_;
   std::int64_t watch_every_ = 1;  // steps

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -11,7 +13,8 @@ namespace obscura::sim {
 /// What the motors of a model's joints aim at: a speed of the joint's free coordinate c, constant or a
 /// function of time. One that follows a coordinate s(t) aims at
 ///   c' = s' + k (s - c)       k  kFollow, 1/s
-/// so that it goes along exactly once it is there, and comes back where it was not strong enough.
+/// so that it goes along exactly once it is there, and comes back where it was not strong enough. The angle of
+/// a hinge in space counts no whole turns, so s - c is within half a turn there.
 template <int D>
 class Motors {
  public:
@@ -47,10 +50,16 @@ class Motors {
     // the angle of a drive_formula<2>, with its first two derivatives
     const auto output = [&](int k) { return evaluation->output(6 + k)[0]; };
     if (!motor.follows) return {output(0), output(1)};
-    return {output(1) + kFollow * (output(0) - c), output(2) + kFollow * (output(1) - speed)};
+    return {output(1) + kFollow * behind(joint, output(0) - c), output(2) + kFollow * (output(1) - speed)};
   }
 
  private:
+  double behind(int joint, double way) const {
+    if (D == 2 || model_.joints[std::size_t(joint)].kind != JointKind::hinge) return way;
+    constexpr double kTurn = 2 * std::numbers::pi;
+    return way - kTurn * std::floor(way / kTurn + 0.5);
+  }
+
   const Model<D>& model_;
   std::vector<std::optional<Evaluation>> evaluations_;  // one a joint
 };

@@ -6,15 +6,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/energy/energy.h"
 #include "sim/solve/exact/exact.h"
+#include "sim/solve/restitution.h"
 
 namespace obscura::sim {
 
 namespace {
 
 constexpr int kRounds = 200;        // of pairs in turn
+constexpr double kGain = 1e-13;     // of the energy: rounding
 constexpr double kRounding = 1000;  // of what is still: what a solve leaves
 
 }  // namespace
@@ -99,13 +102,18 @@ void ExactSolver<D>::solve_impacts(State<D>& state, double bounce) {
   b_.resize(Eigen::Index(rows_.size()));
   save(state, scratch_.saved);
   const double before = kinetic_energy(state);
-  double low = 0, high = bounce;
-  for (int tries = 0; tries < 30; ++tries) {
-    for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_velocity(i);
+  const Eigen::VectorXd velocities = [&] {
+    Eigen::VectorXd all(rows_.size());
+    for (int i = 0; i < int(rows_.size()); ++i) all[i] = row_velocity(i);
+    return all;
+  }();
+  restitution_share(bounce, [&](double share) {
+    restore(scratch_.saved, state);
+    b_ = velocities;
     for (const Constraint& constraint : constraints_) {
-      const double vn = row_velocity(constraint.first);
+      const double vn = velocities[constraint.first];
       if (constraint.kind == Constraint::Kind::contact && vn < -progress_.rest_speed)
-        b_[constraint.first] += bounce * material(candidates_[constraint.of].key).elasticity * vn;
+        b_[constraint.first] += share * material(candidates_[constraint.of].key).elasticity * vn;
     }
     modes_.assign(blocks_.size(), {}), warm_.setZero(Eigen::Index(rows_.size()));
     bool found = solve();
@@ -114,15 +122,9 @@ void ExactSolver<D>::solve_impacts(State<D>& state, double bounce) {
     double gives = 0;
     for (int i = 0; i < int(rows_.size()); ++i) gives += f_[i] * given(i);
     apply_impulses(state, false);
-    const double after = kinetic_energy(state);
-    if ((found && after - gives <= before * (1 + 1e-13) + 1e-13 * std::fabs(gives)) || bounce == 0) break;
-    // too much: less of e, at most half as often as it takes to know how much to 1e-6
-    high = bounce;
-    if (tries > 20) low = 0;
-    bounce = tries > 20 || !found ? 0 : 0.5 * (low + high);
-    if (bounce < 1e-6) bounce = 0;
-    restore(scratch_.saved, state);
-  }
+    const double size = before + std::fabs(gives), rises = kinetic_energy(state) - gives - before;
+    return !found ? std::numeric_limits<double>::infinity() : size > 0 ? rises / size - kGain : 0;
+  });
   for (int i = 0; i < int(rows_.size()); ++i) progress_.given += f_[i] * given(i);
   for (const Constraint& constraint : constraints_) {
     if (constraint.kind != Constraint::Kind::contact || f_[constraint.first] == 0) continue;

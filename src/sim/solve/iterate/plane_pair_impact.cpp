@@ -12,6 +12,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/solve/restitution.h"
+
 namespace obscura::sim::plane {
 
 namespace {
@@ -20,7 +22,6 @@ constexpr int kRounds = 30;          // of both touches
 constexpr double kExact = 1e-13;     // of the impulses, or of the speeds: what is left
 constexpr double kSingular = 1e-12;  // of k_nn k_tt: no smaller determinant is told from rounding
 constexpr double kGain = 1e-13;      // of the energy that moves along the rows: rounding
-constexpr double kLeast = 1e-6;      // of e: halved so far it is none
 constexpr double kParallel = 1e-8;   // of k_00 k_11: two normals are one
 
 // the impulses of touch k alone, speeds b without them
@@ -175,11 +176,12 @@ double gain(const PairImpact& it, const double (&p)[4], double& size) {
 }  // namespace
 
 void solve(const PairImpact& impact, double (&p)[4]) {
-  double size = 0;
-  for (double bounce = 1;; bounce = bounce > kLeast ? 0.5 * bounce : 0) {
-    attempt(impact, bounce, p);
-    if (bounce == 0 || gain(impact, p, size) <= kGain * size) return;
-  }
+  restitution_share(1, [&](double share) {
+    double size = 0;
+    attempt(impact, share, p);
+    const double gained = gain(impact, p, size);
+    return size > 0 ? gained / size - kGain : 0;
+  });
 }
 
 }  // namespace obscura::sim::plane

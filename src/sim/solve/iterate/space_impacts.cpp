@@ -15,6 +15,7 @@
 #include "sim/solve/iterate/closing_time.h"
 #include "sim/solve/iterate/endless_impacts.h"
 #include "sim/solve/iterate/space.h"
+#include "sim/solve/restitution.h"
 
 namespace obscura::sim {
 
@@ -24,7 +25,6 @@ constexpr int kMost = 8;               // gaps of one impact
 constexpr int kSweeps = 30;            // over the rows, for the modes that are tried first
 constexpr int kPatience = 40;          // systems: what takes more is left to the iterations
 constexpr double kImpactGain = 1e-13;  // of the energy that moves along the rows: rounding
-constexpr int kShares = 24;            // halvings for the share of e that does so
 constexpr double kLockedPush = 1e-9;   // of what a push moves without joints
 
 }  // namespace
@@ -132,7 +132,7 @@ bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work)
     double sum = 0, size = 0;
     for (int i = 0; i < rows; ++i)
       sum += p_[i] * (v[i] + 0.5 * K_.row(i).dot(p_)), size = std::max(size, std::abs(p_[i] * v[i]));
-    return sum > kImpactGain * size ? sum / size : 0;
+    return size > 0 ? sum / size - kImpactGain : 0;
   };
   // with e times `share`; how much more energy there is after it, of the largest part that an impulse moves
   cone_.patience = kPatience;
@@ -151,19 +151,9 @@ bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work)
     if (!cone_.solve(K_, b_, blocks_, modes_, p_).found) return std::numeric_limits<double>::infinity();
     return rise();
   };
-  double gained = gain(1), low = gained > 0 ? 0 : 1, high = 1;
+  double gained = gain(1);
   if (!std::isfinite(gained)) return false;
-  if (gained > 0) {
-    // with friction half of it and half again, as by the other solvers; without, the largest share that keeps
-    // it
-    const bool rubs =
-        std::any_of(blocks_.begin(), blocks_.end(), [](const auto& block) { return block.mu > 0; });
-    for (int n = 0; n < kShares && (low == 0 || !rubs); ++n) {
-      const double mid = 0.5 * (low + high);
-      (gain(mid) > 0 ? high : low) = mid;
-    }
-    gained = gain(low);
-  }
+  restitution_share(1, [&](double share) { return share == 1 ? gained : gained = gain(share); });
   if (!std::isfinite(gained)) return false;
 
   for (const int i : meets_) {
