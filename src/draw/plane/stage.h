@@ -48,8 +48,9 @@ std::vector<std::uint64_t> seams_of(const sim::SceneInfo::Body& body);
 
 using Ways = std::span<const std::shared_ptr<const sim::Track>>;
 
-/// The way of a body since `from` (s), up to now.
-std::vector<sim::Track::Point> way_of(int body, double from, const sim::Snapshot& now, Ways ways);
+/// The way of a body since `from` (s), up to now, as round as its motion to `tolerance` (m).
+std::vector<sim::Track::Point> way_of(int body, double from, const sim::Snapshot& now, Ways ways,
+                                      double tolerance);
 
 /// The points of a way between two of its points that its curve needs to be no farther than `least` (m) from
 /// the line through them, in order.

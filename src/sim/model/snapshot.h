@@ -172,6 +172,8 @@ struct Track {
     double time = 0;
     Vec3 place = Vec3::Zero();
     Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+    Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  // of the centre of mass, m/s; rad/s
+    bool smooth = false;  // no impact since the point before: both have the velocities of one motion
   };
   std::vector<int> bodies;
   std::vector<std::vector<Point>> points;  // one list a body of `bodies`, times increasing
