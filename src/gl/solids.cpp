@@ -85,9 +85,7 @@ SolidPainter::SolidPainter(const Functions& gl, int width, int height)
   gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D_MULTISAMPLE, depth_texture_, 0);
   check(gl, "four samples a pixel");
 
-  map_texture_ = texture(gl, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, kMap, kMap, GL_LINEAR);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  map_texture_ = texture(gl, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, kMap, kMap, GL_NEAREST);
   map_ = framebuffer(gl, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, map_texture_);
   gl.DrawBuffer(GL_NONE);
   gl.ReadBuffer(GL_NONE);
@@ -193,6 +191,10 @@ void SolidPainter::paint(const draw::Solids& solids, unsigned frame, Damage& dam
   draw(plain, 0, solids.triangles.size());
   gl_.ActiveTexture(GL_TEXTURE0);
   gl_.BindTexture(GL_TEXTURE_2D, map_texture_);
+  if (map) {
+    shadowed.use();
+    gl_.Uniform2f(shadowed.uniform("soft"), solids.soft[0], solids.soft[1]);
+  }
   draw(map ? shadowed : plain, solids.triangles.size(), solids.shadowed.size());
   if (gl_.ClipControl) gl_.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
   gl_.Disable(GL_DEPTH_TEST);

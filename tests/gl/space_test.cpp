@@ -281,6 +281,38 @@ TEST(Space, ABoxThrowsItsShadowOnAnother) {
   EXPECT_LT(top(0.6), top(-3) - 25);
 }
 
+/// A plate over a large one: the edge of its shadow there takes more pixels the higher it is.
+TEST(Space, AShadowOnABodyIsSofterTheHigherItsCasterIs) {
+  Renderer renderer(1920, 1080);
+  const auto edge = [&](double height) {
+    Made made;
+    made.look.ground = false;
+    made.box({0, 0.25, 0}, {1.5, 0.25, 1.5}, "sky");
+    made.box(Vec3(0, 0.5, 0) + height * Vec3(-0.6, 1, 0.42), {0.4, 0.001, 0.4}, "orange");
+    const media::Image image = drawn(renderer, made.picture());
+    const draw::CameraProjection lens = made.depictor().lens(made.now);
+    const auto across = [&](double x) { return brightness(at(image, lens.page({x, 0.5, 0}))); };
+    const double lit = across(0.6), dark = across(0.36);
+    EXPECT_LT(dark, lit - 25);
+    int between = 0;
+    for (double x = 0.36; x < 0.6; x += 0.001) between += across(x) > dark + 5 && across(x) < lit - 5;
+    return between * 0.001;  // m
+  };
+  EXPECT_GT(edge(0.8), 2 * edge(0.1));
+}
+
+TEST(Space, OnADarkGroundAShadowIsSeenFromTheLastRow) {
+  Made made;
+  made.look.theme = draw::Theme::screen, made.look.ground = true;
+  made.box({0, 1, 0}, {0.4, 0.1, 0.4}, "orange");
+  Renderer renderer(640, 360);
+  const media::Image image = drawn(renderer, made.picture());
+  const draw::CameraProjection lens = made.depictor().lens(made.now);
+  const Color dark = at(image, lens.page({0.6, 0, -0.42})), lit = at(image, lens.page({-0.6, 0, 0.46}));
+  EXPECT_GT(draw::contrast(lit, dark), 1.6);
+  EXPECT_GT(brightness(dark), 8) << "not black";
+}
+
 TEST(Space, TheSameBytesTwiceAndFromBothBackEnds) {
   OBSCURA_NEEDS_BOTH_BACK_ENDS();
   Renderer osmesa(320, 180, {.backend = Backend::osmesa});

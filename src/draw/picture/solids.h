@@ -47,6 +47,8 @@ struct Solids {
   std::vector<std::uint32_t> triangles;       // that nothing can throw a shadow on
   std::vector<std::uint32_t> shadowed;        // that something may
   std::vector<std::array<float, 3>> casters;  // triangles turned away from the light, as `light` of a vertex
+  std::array<float, 2>
+      soft{};  // of a shadow in that map: half its edge's width a distance to the caster, and at most
   std::vector<Shade> shades;
   std::vector<Point> points;   // page units
   Color shade{0, 0, 0, 0};     // laid over the ground where no ray reaches it

@@ -19,7 +19,6 @@ constexpr double kBracket = 20;          // page units: half a plate from which 
 constexpr double kFromAbove = 0.85;      // sine of the camera's elevation, from which on there are none
 constexpr int kBracketNumber = 1 << 29;  // theirs in sight, above those of all others
 constexpr double kThinEdge = 0.11;       // of a body's thickness: an outline is not wider
-constexpr double kCrease = 0.94;         // cosine of a turn between faces that shows as an edge
 constexpr double kAround = 60;           // page units outside the window where things are still drawn
 constexpr double kLeast = 1.6;           // radius of what is too small to see
 
@@ -54,14 +53,21 @@ Shaded surface(const SpaceFrame& s, Color own, const Vec3& place, const Vec3& no
                : shade(own, s.stage.look.theme, s.stage.light, normal);
 }
 
-/// The faces of a polyhedron that look at the eye.
-void add_faces(SpaceFrame& s, const Polyhedron& body, Color own) {
-  for (const Polyhedron::Face& face : body.faces) {
+/// The faces of a polyhedron that look at the eye; `turn` takes `normals`, those of a round surface, to the
+/// world.
+void add_faces(SpaceFrame& s, const Polyhedron& body, Color own,
+               const std::vector<std::vector<Vec3>>& normals = {},
+               const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity()) {
+  for (std::size_t f = 0; f < body.faces.size(); ++f) {
+    const Polyhedron::Face& face = body.faces[f];
     const Vec3& place = body.vertices[face.loop[0]];
     if (face.normal.dot(s.lens.perspective() ? Vec3(s.lens.eye() - place) : s.lens.back) <= 0) continue;
     const auto first = std::uint32_t(s.corners.size());
-    for (int v : face.loop)
-      corner(s, body.vertices[v], face.normal, surface(s, own, body.vertices[v], face.normal));
+    for (std::size_t i = 0; i < face.loop.size(); ++i) {
+      const Vec3& at = body.vertices[face.loop[i]];
+      corner(s, at, face.normal,
+             surface(s, own, at, normals.empty() ? face.normal : Vec3(turn * normals[f][i])));
+    }
     for (std::uint32_t i = 2; i < face.loop.size(); ++i)
       for (std::uint32_t k : {first, first + i - 1, first + i}) s.triangles.push_back(k);
   }
@@ -214,12 +220,13 @@ void add_bodies(SpaceFrame& s) {
     const Color own = s.stage.own[piece.body];
     switch (piece.form) {
       case Piece::Form::polyhedron: {
-        s.placed[i] = piece.flat.placed(body.orientation.toRotationMatrix(), body.position);
+        const Eigen::Matrix3d turn = body.orientation.toRotationMatrix();
+        s.placed[i] = piece.flat.placed(turn, body.position);
         Vec3 middle = Vec3::Zero();
         for (const Vec3& v : s.placed[i].vertices) middle += v / double(s.placed[i].vertices.size());
         begin(s, middle, piece.reach, i);
         if (in_window(s.lens, middle, piece.reach)) {
-          add_faces(s, s.placed[i], own);
+          add_faces(s, s.placed[i], own, piece.normals, turn);
           s.sight.add(s.placed[i], i, piece.body);
         }
         end(s);
