@@ -67,6 +67,9 @@ double newton(const sim::SceneInfo& cast);
 /// More springs than these, nets apart, are drawn as lines.
 inline constexpr int kMany = 12;
 
+/// Of an arrow's growth: smaller ones are not drawn.
+inline constexpr double kSmallest = 0.2;
+
 /// An arrow from `tail` to `tip` on the page.
 struct Arrow {
   Point tail, tip;

@@ -82,8 +82,9 @@ struct SceneInfo {
   std::vector<Mouse> mice;
   std::vector<Joint> joints;
   std::vector<Rail> rails;
-  bool forces = false;      // beside gravity, drag, springs and explosions
-  bool books_work = false;  // Energies::work is kept
+  std::optional<double> surface{};  // the y of a fluid's, m
+  bool forces = false;              // beside gravity, drag, springs and explosions
+  bool books_work = false;          // Energies::work is kept
 };
 
 struct Energies {
