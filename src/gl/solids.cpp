@@ -58,6 +58,7 @@ SolidPainter::SolidPainter(const Functions& gl, int width, int height)
       shadow_program_(gl, "solid.vert", "solid_shadow.frag"),
       grained_program_(gl, "solid.vert", "grained.frag"),
       grained_shadow_program_(gl, "solid.vert", "grained_shadow.frag"),
+      water_program_(gl, "water.vert", "water.frag"),
       caster_program_(gl, "caster.vert", "caster.frag"),
       shade_program_(gl, "cover.vert", "shade.frag"),
       resolve_program_(gl, "cover.vert", "resolve.frag"),
@@ -94,7 +95,7 @@ SolidPainter::SolidPainter(const Functions& gl, int width, int height)
   dark_texture_ = texture(gl, GL_R8, GL_RED, GL_UNSIGNED_BYTE, half_width_, half_height_, GL_LINEAR);
 
   for (const Program* program :
-       {&solid_program_, &shadow_program_, &grained_program_, &grained_shadow_program_}) {
+       {&solid_program_, &shadow_program_, &grained_program_, &grained_shadow_program_, &water_program_}) {
     program->use();
     gl.Uniform2f(program->uniform("per_half_size"), 2.0f / float(width), 2.0f / float(height));
   }
@@ -125,7 +126,7 @@ void SolidPainter::paint(const draw::Solids& solids, unsigned frame, Damage& dam
   // where bodies are near it, and where the light does not reach it
   if (solids.touch.a > 0) paint_ground(solids, solids.touches, solids.touch, frame, window, damage);
   if (solids.shade.a > 0) paint_ground(solids, solids.shades, solids.shade, frame, window, damage);
-  if (solids.triangles.empty() && solids.shadowed.empty()) {
+  if (solids.triangles.empty() && solids.shadowed.empty() && solids.water.empty()) {
     gl_.Disable(GL_SCISSOR_TEST);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, frame);
     return;
@@ -158,6 +159,7 @@ void SolidPainter::paint(const draw::Solids& solids, unsigned frame, Damage& dam
   };
   touch(solids.triangles);
   touch(solids.shadowed);
+  touch(solids.water);
   damage.add(touched_);
 
   const bool map = !solids.casters.empty() && !solids.shadowed.empty();
@@ -179,6 +181,7 @@ void SolidPainter::paint(const draw::Solids& solids, unsigned frame, Damage& dam
   solid_array_.bind();
   indices_ = solids.triangles;
   indices_.insert(indices_.end(), solids.shadowed.begin(), solids.shadowed.end());
+  indices_.insert(indices_.end(), solids.water.begin(), solids.water.end());
   index_buffer_.upload(indices_);
   const auto draw = [&](const Program& program, std::size_t first, std::size_t count) {
     if (count == 0) return;
@@ -196,6 +199,12 @@ void SolidPainter::paint(const draw::Solids& solids, unsigned frame, Damage& dam
     gl_.Uniform2f(shadowed.uniform("soft"), solids.soft[0], solids.soft[1]);
   }
   draw(map ? shadowed : plain, solids.triangles.size(), solids.shadowed.size());
+  if (!solids.water.empty()) {
+    gl_.Enable(GL_BLEND);
+    gl_.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    draw(water_program_, solids.triangles.size() + solids.shadowed.size(), solids.water.size());
+    gl_.Disable(GL_BLEND);
+  }
   if (gl_.ClipControl) gl_.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
   gl_.Disable(GL_DEPTH_TEST);
 

@@ -301,6 +301,30 @@ TEST(Space, AShadowOnABodyIsSofterTheHigherItsCasterIs) {
   EXPECT_GT(edge(0.8), 2 * edge(0.1));
 }
 
+/// A fluid's surface tints what lies under it, and not what rises out of it before it.
+TEST(Space, AFluidIsSeenThrough) {
+  Renderer renderer(640, 360);
+  Made made;
+  made.look.ground = false;
+  made.box({-0.8, 0.2, 0}, {0.2, 0.1, 0.2}, "orange");
+  made.box({0.8, 0.9, 0}, {0.2, 0.3, 0.2}, "orange");
+  const media::Image dry = drawn(renderer, made.picture());
+  made.cast.surface = 0.8;
+  const media::Image wet = drawn(renderer, made.picture());
+  const draw::CameraProjection lens = made.depictor().lens(made.now);
+  const Color sky = *draw::color("sky"), orange = *draw::color("orange");
+  const auto both = [&](const Vec3& place) {
+    return std::pair(at(dry, lens.page(place)), at(wet, lens.page(place)));
+  };
+  const auto [ground, under_water] = both({0, 0, 0});
+  EXPECT_GT(like(under_water, sky), 0.7);
+  const auto [box, drowned] = both({-0.8, 0.3, 0});
+  EXPECT_GT(like(drowned, orange), 0.5);
+  EXPECT_LT(like(drowned, orange), like(box, orange) - 0.001);
+  const auto [top, still_top] = both({0.8, 1.2, 0});
+  EXPECT_EQ(top, still_top);
+}
+
 TEST(Space, OnADarkGroundAShadowIsSeenFromTheLastRow) {
   Made made;
   made.look.theme = draw::Theme::screen, made.look.ground = true;

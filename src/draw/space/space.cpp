@@ -309,12 +309,14 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
     add_bodies(scenery);
     add_links(scenery);
     add_brackets(scenery);
+    add_water(scenery);
     scenery.sight.finish();
     add_shadows(scenery);
     trace_trails(scenery, ways);
     trace_drops(scenery);
     trace_paths(scenery, paths, false);
     for (const SpaceGhost& ghost : ghosts) trace_ghost(scenery, ghost);
+    trace_water(scenery);
     trace_edges(scenery);
     draw_room_front(stage, lens, picture.moving);
     draw_space_arrows(scenery);

@@ -144,6 +144,9 @@ void add_bodies(SpaceFrame& scenery);
 void add_links(SpaceFrame& scenery);
 /// Pieces of ceiling over the places of the room from which something hangs.
 void add_brackets(SpaceFrame& scenery);
+/// The surface of a fluid, and the line around it.
+void add_water(SpaceFrame& scenery);
+void trace_water(SpaceFrame& scenery);
 /// The edges of bodies that are seen, and of those pieces.
 void trace_edges(SpaceFrame& scenery);
 void trace_ghost(SpaceFrame& scenery, const SpaceGhost& ghost);
