@@ -2,6 +2,7 @@
 // thickness (of wood: the mean of its two lesser ones), its first axis along the longest side; the fourth says which material.
 //   1 wood: rings around a line beside the body, a little wavy; their late wood is a little darker
 //   2 checks: cells of one unit, by turns dark; each axis a square wave averaged over the pixel (Quilez, filtered checks)
+//   3 marks, see there
 
 float wood(vec3 p) {
   float r = 2.1 * length(p.yz + vec2(0.4, 3.7)) + 0.16 * sin(0.31 * p.x + 0.7 * p.y) + 0.05 * sin(1.1 * p.x + 2.3);
@@ -18,8 +19,8 @@ float checks(vec3 p) {
   return 0.78 + 0.22 * clamp(i.x, -1.0, 1.0) * clamp(i.y, -1.0, 1.0) * clamp(i.z, -1.0, 1.0);
 }
 
-// both are worked out for every pixel of a quad, as their widths need
+// all are worked out for every pixel of a quad, as their widths need
 float tone(vec4 grain) {
-  float w = wood(grain.xyz), c = checks(grain.xyz);
-  return grain.w > 1.5 ? c : grain.w > 0.5 ? w : 1.0;
+  float w = wood(grain.xyz), c = checks(grain.xyz), m = marks(grain.xyz);
+  return grain.w > 2.5 ? m : grain.w > 1.5 ? c : grain.w > 0.5 ? w : 1.0;
 }

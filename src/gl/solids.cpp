@@ -58,6 +58,8 @@ SolidPainter::SolidPainter(const Functions& gl, int width, int height)
       shadow_program_(gl, "solid.vert", "solid_shadow.frag"),
       grained_program_(gl, "solid.vert", "grained.frag"),
       grained_shadow_program_(gl, "solid.vert", "grained_shadow.frag"),
+      marked_program_(gl, "solid.vert", "marked.frag"),
+      marked_shadow_program_(gl, "solid.vert", "marked_shadow.frag"),
       water_program_(gl, "water.vert", "water.frag"),
       caster_program_(gl, "caster.vert", "caster.frag"),
       shade_program_(gl, "cover.vert", "shade.frag"),
@@ -95,11 +97,12 @@ SolidPainter::SolidPainter(const Functions& gl, int width, int height)
   dark_texture_ = texture(gl, GL_R8, GL_RED, GL_UNSIGNED_BYTE, half_width_, half_height_, GL_LINEAR);
 
   for (const Program* program :
-       {&solid_program_, &shadow_program_, &grained_program_, &grained_shadow_program_, &water_program_}) {
+       {&solid_program_, &shadow_program_, &grained_program_, &grained_shadow_program_, &marked_program_,
+        &marked_shadow_program_, &water_program_}) {
     program->use();
     gl.Uniform2f(program->uniform("per_half_size"), 2.0f / float(width), 2.0f / float(height));
   }
-  for (const Program* program : {&shadow_program_, &grained_shadow_program_}) {
+  for (const Program* program : {&shadow_program_, &grained_shadow_program_, &marked_shadow_program_}) {
     program->use();
     gl.Uniform2f(program->uniform("texel"), 1.0f / kMap, kBias);
   }
@@ -189,8 +192,10 @@ void SolidPainter::paint(const draw::Solids& solids, unsigned frame, Damage& dam
     gl_.DrawElements(GL_TRIANGLES, GLsizei(count), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(sizeof(std::uint32_t) * first));
   };
-  const Program& plain = solids.grained ? grained_program_ : solid_program_;
-  const Program& shadowed = solids.grained ? grained_shadow_program_ : shadow_program_;
+  const Program& plain = solids.grained ? grained_program_ : solids.marked ? marked_program_ : solid_program_;
+  const Program& shadowed = solids.grained  ? grained_shadow_program_
+                            : solids.marked ? marked_shadow_program_
+                                            : shadow_program_;
   draw(plain, 0, solids.triangles.size());
   gl_.ActiveTexture(GL_TEXTURE0);
   gl_.BindTexture(GL_TEXTURE_2D, map_texture_);

@@ -301,6 +301,25 @@ TEST(Space, AShadowOnABodyIsSofterTheHigherItsCasterIs) {
   EXPECT_GT(edge(0.8), 2 * edge(0.1));
 }
 
+/// A ball that turns has lines on it, which go with it; a particle, what is small and what is asked to be
+/// plain have none.
+TEST(Space, ARollingBallShowsHowItTurns) {
+  Renderer renderer(960, 540);
+  const auto ball = [&](double angle, double radius, bool turns, bool axes) {
+    Made made;
+    made.look.ground = false, made.look.axes = axes;
+    const int it = made.body(sim::ShapeKind::ball, {0, 1, 0}, Vec3::Zero(), radius, "blue",
+                             Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vec3::UnitZ())));
+    made.cast.bodies[std::size_t(it)].turns = turns;
+    return drawn(renderer, made.picture());
+  };
+  EXPECT_NE(ball(0.3, 0.4, true, true), ball(0.6, 0.4, true, true));
+  EXPECT_NE(ball(0.3, 0.4, true, true), ball(0.3, 0.4, true, false));
+  EXPECT_EQ(ball(0.3, 0.4, true, false), ball(0.6, 0.4, true, false));
+  EXPECT_EQ(ball(0.3, 0.4, false, true), ball(0.3, 0.4, true, false));
+  EXPECT_EQ(ball(0.3, 0.03, true, true), ball(0.3, 0.03, true, false)) << "about five pixels";
+}
+
 /// A fluid's surface tints what lies under it, and not what rises out of it before it.
 TEST(Space, AFluidIsSeenThrough) {
   Renderer renderer(640, 360);

@@ -42,7 +42,8 @@ struct Solids {
   };
 
   Rect window;
-  bool grained = false;  // whether a body is of a material with a pattern
+  bool grained = false;  // whether a body is of a material with a pattern,
+  bool marked = false;   // and whether one has lines that show how it turns
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> triangles;       // that nothing can throw a shadow on
   std::vector<std::uint32_t> shadowed;        // that something may

@@ -298,13 +298,14 @@ ShadowMap fit_map(const LightView& view, const Cast& cast, bool any) {
 std::array<float, 4> grain(const SpaceFrame& s, const Corner& corner) {
   const Piece& piece = s.stage.pieces[std::size_t(corner.piece)];
   const Material material = s.stage.looks(piece.body).material;
-  if (material != Material::wood && material != Material::checks) return {};
+  if (material != Material::wood && material != Material::checks && !piece.marked) return {};
   const sim::Snapshot::Body& body = s.now.bodies[std::size_t(piece.body)];
   const Vec3 below = corner.place - 0.02 * piece.least * corner.normal;
   Vec3 at = piece.grain * (body.orientation.conjugate() * (below - body.position));
   // no two boards are cut from one place of the tree
   if (material == Material::wood) at += std::fmod(0.618034 * piece.body, 1.0) * Vec3(11, 1.5, 2.5);
-  return {float(at.x()), float(at.y()), float(at.z()), material == Material::wood ? 1.0f : 2.0f};
+  const float which = piece.marked ? 3 : material == Material::wood ? 1 : 2;
+  return {float(at.x()), float(at.y()), float(at.z()), which};
 }
 
 // all corners as the eye and the light see them
@@ -321,7 +322,7 @@ void add_vertices(SpaceFrame& s, const ShadowMap& lit) {
   }
   if (s.lens.perspective()) near = std::max(near, kLightNear);
   const double span = std::max(farthest - near, 1e-12 + 1e-9 * std::abs(near));
-  s.solids.grained = s.stage.grained;
+  s.solids.grained = s.stage.grained, s.solids.marked = s.stage.marked;
   s.solids.vertices.reserve(s.corners.size());
   for (std::size_t i = 0; i < s.corners.size(); ++i) {
     const Corner& c = s.corners[i];

@@ -212,6 +212,10 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
     const Material material = looks(piece.body).material;
     piece.grain = grain_of(piece, material);
     grained = grained || material == Material::wood || material == Material::checks;
+    const sim::SceneInfo::Body& body = cast.bodies[std::size_t(piece.body)];
+    piece.marked = look.axes && material == Material::matte && body.turns && !body.fixed &&
+                   (body.kind == sim::ShapeKind::ball || body.kind == sim::ShapeKind::capsule);
+    marked = marked || piece.marked;
   }
 
   // the page: caption, then a window for each camera

@@ -27,6 +27,7 @@ struct Piece {
   double reach = 0;                                     // from the body's centre, m
   double least = 0;                                     // half its thickness, m
   Eigen::Matrix3d grain = Eigen::Matrix3d::Identity();  // body frame to that of its material's pattern
+  bool marked = false;                                  // a round body with lines that show how it turns
 };
 
 /// A window on the page and the camera that looks out of it.
@@ -48,7 +49,8 @@ struct SpaceStage {
   std::vector<Panel> panels;
   Light light;
   std::vector<Piece> pieces;  // by body
-  bool grained = false;       // whether one of them is of wood or checks
+  bool grained = false;       // whether one of them is of wood or checks,
+  bool marked = false;        // and whether one is marked
   std::vector<Color> own;     // one a body
   std::vector<double> dots;   // as Stage's
   Polyhedron room;            // what the walls leave of space
