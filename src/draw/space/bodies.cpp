@@ -15,7 +15,8 @@ using sim::Vec3;
 
 constexpr double kEdgeLine = 2.3;                            // page units
 constexpr double kSilhouetteLine = 1.3, kCreaseLine = 0.75;  // of that
-constexpr double kBracket = 20;          // page units: half a plate from which something hangs
+constexpr double kBracket = 20;                      // page units: half a plate from which something hangs
+constexpr double kHung = 1.3, kLeastBracket = 0.45;  // of what hangs there: not wider; of its size: nor less
 constexpr double kFromAbove = 0.85;      // sine of the camera's elevation, from which on there are none
 constexpr int kBracketNumber = 1 << 29;  // theirs in sight, above those of all others
 constexpr double kThinEdge = 0.11;       // of a body's thickness: an outline is not wider
@@ -352,9 +353,9 @@ void add_brackets(SpaceFrame& s) {
   const Vec3 up = -cast.gravity.normalized();
   // from above a plate would hide what hangs from it
   if (s.lens.back.dot(up) > kFromAbove) return;
-  const double half = kBracket * s.stage.layout.weight * s.zoom / s.lens.scale, thick = 0.3 * half;
+  const double whole = kBracket * s.stage.layout.weight * s.zoom / s.lens.scale;
   const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), up).toRotationMatrix();
-  const auto held = [&](const Vec3& at) {
+  const auto held = [&](const Vec3& at, double half) {
     for (const sim::SceneInfo::Wall& wall : cast.walls)
       if ((at - wall.point).dot(wall.normal.normalized()) < 2 * half) return true;
     for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
@@ -364,11 +365,21 @@ void add_brackets(SpaceFrame& s) {
     }
     return false;
   };
-  const auto add = [&](const Vec3& at) {
+  // modest against what is made fast there
+  std::vector<double> far(cast.bodies.size(), 0);
+  for (const Piece& piece : s.stage.pieces) {
+    const double dot = s.stage.dots[std::size_t(piece.body)];
+    far[std::size_t(piece.body)] =
+        std::max(far[std::size_t(piece.body)],
+                 dot > 0 ? dot * whole / (kBracket * s.stage.layout.weight) : piece.reach);
+  }
+  const auto add = [&](const Vec3& at, int hung) {
+    const double half = std::clamp(kHung * far[std::size_t(hung)], kLeastBracket * whole, whole),
+                 thick = 0.3 * half;
     const Vec3 center = at + thick * up;
     const double reach = 2 * half;
-    if (!held(at)) s.solids.plates.push_back({center, half, thick});
-    if (held(at) || !in_window(s.lens, center, reach) || s.lens.depth(center) < 1e-2) return;
+    if (!held(at, half)) s.solids.plates.push_back({center, half, thick});
+    if (held(at, half) || !in_window(s.lens, center, reach) || s.lens.depth(center) < 1e-2) return;
     const Polyhedron plate = box({half, thick, half}).placed(turn, center);
     begin(s, center, reach, -1);
     add_faces(s, plate, neutral(s.stage.look.theme));
@@ -378,14 +389,15 @@ void add_brackets(SpaceFrame& s) {
   };
   for (std::size_t i = 0; i < cast.springs.size() && i < s.now.springs.size(); ++i) {
     const sim::SceneInfo::Spring& spring = cast.springs[i];
-    if ((spring.a < 0) != (spring.b < 0)) add(spring.a < 0 ? s.now.springs[i].a : s.now.springs[i].b);
+    if ((spring.a < 0) != (spring.b < 0))
+      add(spring.a < 0 ? s.now.springs[i].a : s.now.springs[i].b, spring.a < 0 ? spring.b : spring.a);
   }
   for (std::size_t i = 0; i < cast.joints.size() && i < s.now.joints.size(); ++i) {
     const sim::SceneInfo::Joint& joint = cast.joints[i];
     const JointMark mark = joint_look(joint.kind).space;
     if (s.now.joints[i].broken || (joint.a < 0) == (joint.b < 0)) continue;
     if (mark != JointMark::line && mark != JointMark::rope && mark != JointMark::dot) continue;
-    add(joint.a < 0 ? s.now.joints[i].a : s.now.joints[i].b);
+    add(joint.a < 0 ? s.now.joints[i].a : s.now.joints[i].b, joint.a < 0 ? joint.b : joint.a);
   }
 }
 
