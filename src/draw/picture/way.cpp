@@ -26,7 +26,7 @@ constexpr double kCorner = 0.1;  // of the way: nearer to each other two straigh
 constexpr double kBend = 0.98;   // cosine of a turn that is no corner
 constexpr double kFarTurn = 2;   // rad: of more it is taken to turn evenly
 
-Eigen::Vector4d turn(const Sample& p) { return p.orientation.coeffs(); }
+Eigen::Vector4d coefficients(const Sample& p) { return p.orientation.coeffs(); }
 
 // from 0 to `to`, with the slopes at both ends
 Vec3 cubic(double u, const Vec3& from_slope, const Vec3& to, const Vec3& to_slope) {
@@ -35,9 +35,10 @@ Vec3 cubic(double u, const Vec3& from_slope, const Vec3& to, const Vec3& to_slop
 
 // the rotation vector from a to b
 Vec3 turn_between(const Sample& a, const Sample& b, double T) {
-  Eigen::Vector4d inverse = turn(a);
+  Eigen::Vector4d inverse = coefficients(a);
   inverse.head<3>() *= -1;
-  const Vec3 least = sim::logarithm(sim::product(turn(b), inverse)), likely = T / 2 * (a.spin + b.spin);
+  const Vec3 least = sim::logarithm(sim::product(coefficients(b), inverse)),
+             likely = T / 2 * (a.spin + b.spin);
   const double by = likely.norm();
   const Vec3 axis = least.norm() > 1e-9 ? Vec3(least.normalized())
                     : by > 0            ? Vec3(likely / by)
