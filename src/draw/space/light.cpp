@@ -21,7 +21,7 @@ namespace {
 
 using sim::Vec3;
 
-constexpr double kFine = 0.2;    // of kSpread: of the disc that lights thin rods
+constexpr double kFine = 0.08;   // of kSpread: of the disc that lights thin rods
 constexpr double kFoot = 0.35;   // of a ball's radius: where it is near the ground
 constexpr double kFall = 1.6;    // of the darkness around a contact: how much sooner than straight it falls
 constexpr double kNear = 1e-3;   // least depth over the target's
