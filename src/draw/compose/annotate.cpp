@@ -24,8 +24,8 @@ constexpr double kCone = 0.5;           // of the picture's shorter side: how lo
 constexpr double kAxes = 0.36;          // of the picture's shorter side: axes in space
 constexpr double kAslant = 0.05;        // sine of an angle: nearer to each other two arrows are in line
 constexpr double kTail = 1.7;           // widths of an arrow: radius of the dot where it begins
-constexpr double kFull = 0.28;       // of an arrow's growth: from here on its words are as strong as others
-constexpr double kOutOfBall = 0.35;  // of a ball's radius: how far beyond it words of an arrow within it end
+constexpr double kFull = 0.28;      // of an arrow's growth: from here on its words are as strong as others
+constexpr double kOutOfBall = 0.6;  // of a ball's radius: how far beyond it words of an arrow within it end
 
 constexpr std::size_t kManyNames = 40;                 // from here on a name stands above its body or below
 constexpr double kBeside = 2.3, kBesideInPrint = 2.1;  // gaps: from an arrow to its words
