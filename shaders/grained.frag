@@ -1,4 +1,5 @@
 #version 330 core
+#include "marks.glsl"
 #include "material.glsl"
 
 // A surface of wood or checks that nothing throws a shadow on.

@@ -1,4 +1,5 @@
 #version 330 core
+#include "marks.glsl"
 #include "material.glsl"
 #include "shadow.glsl"
 

@@ -1,14 +1,16 @@
 // The pattern of a material: how much of its colour a place has. `grain` is the place in units of half the body's
-// thickness, its first axis along the longest side; the fourth says which material.
-//   1 wood: rings around a line beside the body, a little wavy; their late wood is darker
+// thickness (of wood: the mean of its two lesser ones), its first axis along the longest side; the fourth says which material.
+//   1 wood: rings around a line beside the body, a little wavy; their late wood is a little darker
 //   2 checks: cells of one unit, by turns dark; each axis a square wave averaged over the pixel (Quilez, filtered checks)
+//   3 marks, see there
 
 float wood(vec3 p) {
-  float r = 3.1 * length(p.yz + vec2(0.4, 3.7)) + 0.16 * sin(0.31 * p.x + 0.7 * p.y) + 0.05 * sin(1.1 * p.x + 2.3);
+  float r = 2.1 * length(p.yz + vec2(0.4, 3.7)) + 0.16 * sin(0.31 * p.x + 0.7 * p.y) + 0.05 * sin(1.1 * p.x + 2.3);
   float t = fract(r);
-  float late = smoothstep(0.25, 0.85, t) * (1.0 - smoothstep(0.9, 1.0, t));
-  float fine = clamp(2.2 - 4.0 * fwidth(r), 0.0, 1.0);
-  return 1.0 - 0.17 * mix(0.4, late, fine);
+  float late = smoothstep(0.15, 0.85, t) * (1.0 - smoothstep(0.86, 1.0, t));
+  // rings that are too fine for the picture fade, also where a face only touches one of them
+  float fine = clamp(2.2 - 8.4 * length(fwidth(p.yz)), 0.0, 1.0);
+  return 1.0 - 0.085 * mix(0.42, late, fine);
 }
 
 float checks(vec3 p) {
@@ -17,8 +19,8 @@ float checks(vec3 p) {
   return 0.78 + 0.22 * clamp(i.x, -1.0, 1.0) * clamp(i.y, -1.0, 1.0) * clamp(i.z, -1.0, 1.0);
 }
 
-// both are worked out for every pixel of a quad, as their widths need
+// all are worked out for every pixel of a quad, as their widths need
 float tone(vec4 grain) {
-  float w = wood(grain.xyz), c = checks(grain.xyz);
-  return grain.w > 1.5 ? c : grain.w > 0.5 ? w : 1.0;
+  float w = wood(grain.xyz), c = checks(grain.xyz), m = marks(grain.xyz);
+  return grain.w > 2.5 ? m : grain.w > 1.5 ? c : grain.w > 0.5 ? w : 1.0;
 }

@@ -58,6 +58,9 @@ SolidPainter::SolidPainter(const Functions& gl, int width, int height)
       shadow_program_(gl, "solid.vert", "solid_shadow.frag"),
       grained_program_(gl, "solid.vert", "grained.frag"),
       grained_shadow_program_(gl, "solid.vert", "grained_shadow.frag"),
+      marked_program_(gl, "solid.vert", "marked.frag"),
+      marked_shadow_program_(gl, "solid.vert", "marked_shadow.frag"),
+      water_program_(gl, "water.vert", "water.frag"),
       caster_program_(gl, "caster.vert", "caster.frag"),
       shade_program_(gl, "cover.vert", "shade.frag"),
       resolve_program_(gl, "cover.vert", "resolve.frag"),
@@ -85,9 +88,7 @@ SolidPainter::SolidPainter(const Functions& gl, int width, int height)
   gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D_MULTISAMPLE, depth_texture_, 0);
   check(gl, "four samples a pixel");
 
-  map_texture_ = texture(gl, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, kMap, kMap, GL_LINEAR);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  map_texture_ = texture(gl, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, kMap, kMap, GL_NEAREST);
   map_ = framebuffer(gl, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, map_texture_);
   gl.DrawBuffer(GL_NONE);
   gl.ReadBuffer(GL_NONE);
@@ -96,11 +97,12 @@ SolidPainter::SolidPainter(const Functions& gl, int width, int height)
   dark_texture_ = texture(gl, GL_R8, GL_RED, GL_UNSIGNED_BYTE, half_width_, half_height_, GL_LINEAR);
 
   for (const Program* program :
-       {&solid_program_, &shadow_program_, &grained_program_, &grained_shadow_program_}) {
+       {&solid_program_, &shadow_program_, &grained_program_, &grained_shadow_program_, &marked_program_,
+        &marked_shadow_program_, &water_program_}) {
     program->use();
     gl.Uniform2f(program->uniform("per_half_size"), 2.0f / float(width), 2.0f / float(height));
   }
-  for (const Program* program : {&shadow_program_, &grained_shadow_program_}) {
+  for (const Program* program : {&shadow_program_, &grained_shadow_program_, &marked_shadow_program_}) {
     program->use();
     gl.Uniform2f(program->uniform("texel"), 1.0f / kMap, kBias);
   }
@@ -127,7 +129,7 @@ void SolidPainter::paint(const draw::Solids& solids, unsigned frame, Damage& dam
   // where bodies are near it, and where the light does not reach it
   if (solids.touch.a > 0) paint_ground(solids, solids.touches, solids.touch, frame, window, damage);
   if (solids.shade.a > 0) paint_ground(solids, solids.shades, solids.shade, frame, window, damage);
-  if (solids.triangles.empty() && solids.shadowed.empty()) {
+  if (solids.triangles.empty() && solids.shadowed.empty() && solids.water.empty()) {
     gl_.Disable(GL_SCISSOR_TEST);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, frame);
     return;
@@ -160,6 +162,7 @@ void SolidPainter::paint(const draw::Solids& solids, unsigned frame, Damage& dam
   };
   touch(solids.triangles);
   touch(solids.shadowed);
+  touch(solids.water);
   damage.add(touched_);
 
   const bool map = !solids.casters.empty() && !solids.shadowed.empty();
@@ -181,6 +184,7 @@ void SolidPainter::paint(const draw::Solids& solids, unsigned frame, Damage& dam
   solid_array_.bind();
   indices_ = solids.triangles;
   indices_.insert(indices_.end(), solids.shadowed.begin(), solids.shadowed.end());
+  indices_.insert(indices_.end(), solids.water.begin(), solids.water.end());
   index_buffer_.upload(indices_);
   const auto draw = [&](const Program& program, std::size_t first, std::size_t count) {
     if (count == 0) return;
@@ -188,12 +192,24 @@ void SolidPainter::paint(const draw::Solids& solids, unsigned frame, Damage& dam
     gl_.DrawElements(GL_TRIANGLES, GLsizei(count), GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(sizeof(std::uint32_t) * first));
   };
-  const Program& plain = solids.grained ? grained_program_ : solid_program_;
-  const Program& shadowed = solids.grained ? grained_shadow_program_ : shadow_program_;
+  const Program& plain = solids.grained ? grained_program_ : solids.marked ? marked_program_ : solid_program_;
+  const Program& shadowed = solids.grained  ? grained_shadow_program_
+                            : solids.marked ? marked_shadow_program_
+                                            : shadow_program_;
   draw(plain, 0, solids.triangles.size());
   gl_.ActiveTexture(GL_TEXTURE0);
   gl_.BindTexture(GL_TEXTURE_2D, map_texture_);
+  if (map) {
+    shadowed.use();
+    gl_.Uniform2f(shadowed.uniform("soft"), solids.soft[0], solids.soft[1]);
+  }
   draw(map ? shadowed : plain, solids.triangles.size(), solids.shadowed.size());
+  if (!solids.water.empty()) {
+    gl_.Enable(GL_BLEND);
+    gl_.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    draw(water_program_, solids.triangles.size() + solids.shadowed.size(), solids.water.size());
+    gl_.Disable(GL_BLEND);
+  }
   if (gl_.ClipControl) gl_.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
   gl_.Disable(GL_DEPTH_TEST);
 

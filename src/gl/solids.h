@@ -31,8 +31,8 @@ class SolidPainter {
   const Functions& gl_;
   int width_, height_, half_width_, half_height_;
   double scale_;  // px a page unit
-  Program solid_program_, shadow_program_, grained_program_, grained_shadow_program_, caster_program_,
-      shade_program_, resolve_program_;
+  Program solid_program_, shadow_program_, grained_program_, grained_shadow_program_, marked_program_,
+      marked_shadow_program_, water_program_, caster_program_, shade_program_, resolve_program_;
   VertexArray solid_array_, caster_array_, cover_array_;
   Buffer index_buffer_;
   GLuint samples_texture_ = 0, depth_texture_ = 0, map_texture_ = 0, dark_texture_ = 0;

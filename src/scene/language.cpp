@@ -503,7 +503,7 @@ std::vector<Key> rows() {
       {.path = "look.decimal", .form = choice, .fallback = "\".\"", .choices = {".", ","}, .doc = "The decimal mark of numbers on the picture.", .example = "\",\""},
       {.path = "look.hatching", .form = boolean, .fallback = "true", .doc = "Strokes on the outside of the walls.",
        .example = "false"},
-      {.path = "look.axes", .form = boolean, .fallback = "true", .doc = "The two axes of each box's own frame, and the mark on each ball that turns.",
+      {.path = "look.axes", .form = boolean, .fallback = "true", .doc = "The two axes of each box's own frame, and the marks on each ball that turns, in space on each capsule, too.",
        .example = "false"},
       {.path = "look.pointer", .form = boolean, .fallback = "true",
        .doc = "The mouse: its pointer, its spring and its path.", .example = "false"},

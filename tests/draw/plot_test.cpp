@@ -2,6 +2,7 @@
 // that are told apart without their colours, words that keep off each other.
 
 #include "draw/page/plot.h"
+#include "draw/page/chart.h"
 
 #include <algorithm>
 #include <cmath>
@@ -318,6 +319,30 @@ TEST(Plot, KineticEnergyAndThatOfGravityAreOfBodiesToo) {
   both.bodies.clear(), read.clear();
   for (const Measured::Line& line : both.lines()) read.push_back(line.at(cast, now));
   EXPECT_EQ(read, (std::vector<double>{3, 5}));
+}
+
+/// A plot against a quantity at the right is about as tall as wide, and its line keeps off the axis; over
+/// time it is a column.
+TEST(Charts, AgainstAQuantityAtTheRightIsNoStrip) {
+  Plot plot;
+  Series line;
+  for (int k = 0; k <= 40; ++k)
+    line.along.push_back(4 + std::cos(0.2 * k)), line.values.push_back(std::sin(0.2 * k)),
+        plot.times.push_back(0.1 * k);
+  plot.lines = {line};
+  Chart chart;
+  chart.place = Chart::Place::right;
+  const auto area = [&] {
+    return Charts({chart}, {plot}, palette(Theme::paper), 16.0 / 9, 4, {}, 0, 1).shown().front().area;
+  };
+  const PlotArea tall = area();
+  EXPECT_GT(tall.bottom - tall.top, 2 * (tall.right - tall.left));
+  chart.against = "x";
+  const PlotArea square = area();
+  EXPECT_LT(square.bottom - square.top, 1.7 * (square.right - square.left));
+  EXPECT_GT(square.bottom - square.top, 0.7 * (square.right - square.left));
+  EXPECT_LT(square.first, 3 - 0.05);
+  EXPECT_GT(square.last, 5 + 0.05);
 }
 
 }  // namespace

@@ -159,6 +159,56 @@ TEST(Brackets, AreWhereSomethingIsMadeFastInTheOpen) {
   EXPECT_EQ(strokes(2, -9.81, false, 4.5), 1u);
 }
 
+/// It is modest against what hangs there: no wider than that by a third, nor too small to see.
+TEST(Brackets, AreNotLargerThanWhatHangsThere) {
+  const auto width = [](double radius) {
+    Made made = room(8, 4.5);
+    made.cast.gravity = {0, -9.81, 0};
+    const int ball = made.body(ShapeKind::ball, {3, 1.5, 0}, radius);
+    joint(made, JointKind::rod, ball, -1, {3, 1.5, 0}, {3, 3, 0}, 1.5);
+    const Picture picture = made.picture();
+    const View view = made.depictor().view(0);
+    double widest = 0;
+    for (const Stroke& stroke : picture.moving.strokes) {
+      const Point a = picture.moving.nodes[std::size_t(stroke.begin)].at,
+                  b = picture.moving.nodes[std::size_t(stroke.end) - 1].at;
+      if (std::abs(a.y() - b.y()) < 1e-9 && std::abs(a.y() - view.page({3, 3, 0}).y()) < 1e-9)
+        widest = std::max(widest, std::abs(a.x() - b.x()));
+    }
+    return std::pair(widest, 2 * radius * view.scale);
+  };
+  const auto [small, bob] = width(0.07);
+  EXPECT_NEAR(small, 1.3 * bob, 1e-9);
+  EXPECT_NEAR(width(0.5).first, 48, 1e-9);
+  EXPECT_NEAR(width(0.01).first, 0.45 * 48, 1e-9);
+}
+
+/// The arm of a planetary gear lies over its wheels, a plate that carries them under them.
+TEST(Gears, HaveTheirArmOverThem) {
+  const auto order = [](double thick, bool fixed) {
+    Made made = room(8, 4.5);
+    const int sun = made.body(ShapeKind::ball, {3, 2, 0}, 0.5),
+              planet = made.body(ShapeKind::ball, {4, 2, 0}, 0.5),
+              arm = made.body(ShapeKind::box, {3.5, 2, 0}, thick);
+    made.cast.bodies[std::size_t(arm)].fixed = fixed;
+    sim::SceneInfo::Joint gear;
+    gear.kind = JointKind::gear, gear.offset_a = gear.offset_b = 0.5;
+    gear.places = {{sun}, {arm}, {planet}, {arm}};
+    made.cast.joints.push_back(gear);
+    made.now.joints.emplace_back();
+    const Picture picture = made.picture();
+    int box = -1, disc = -1;
+    for (std::size_t k = 0; k < picture.moving.batches.size(); ++k) {
+      if (picture.moving.batches[k].kind == Kind::box) box = int(k);
+      if (picture.moving.batches[k].kind == Kind::disc) disc = int(k);
+    }
+    return box > disc;
+  };
+  EXPECT_TRUE(order(0.1, false));
+  EXPECT_FALSE(order(0.4, false));
+  EXPECT_FALSE(order(0.1, true));
+}
+
 /// A bracket is where the run began with it, wherever what it holds swings: over it, under what stood on it,
 /// and beside a spring that lay.
 TEST(Brackets, StayOnOneSideThroughARun) {

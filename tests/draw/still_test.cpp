@@ -44,6 +44,40 @@ Made valley() {
   return made;
 }
 
+/// A fluid lies within the walls below its level, its surface from wall to wall; without walls to the page's
+/// edges.
+TEST(Still, AFluidFillsTheRoomUpToItsLevel) {
+  Made open;
+  open.extent = {{-2, 0, 0}, {2, 2, 0}};
+  for (Made made : {room(8, 4.5), slanted(), wedge(), open}) {
+    const bool walls = !made.cast.walls.empty();
+    const std::size_t lines = made.picture().still->strokes.size();
+    made.cast.surface = 1;
+    const View view = made.depictor().view(0);
+    const double level = view.page({0, 1, 0}).y();
+    const Picture picture = made.picture();
+    const List& still = *picture.still;
+    ASSERT_FALSE(still.polygons.empty());
+    const Polygon& fluid = still.polygons.front();
+    EXPECT_EQ(fluid.fill, palette(Theme::paper).water);
+    double low = 1e9, high = -1e9;
+    for (int k = fluid.begin; k < fluid.end; ++k) {
+      const Point& p = still.points[std::size_t(k)];
+      EXPECT_GE(p.y(), level - 1e-9);
+      if (std::abs(p.y() - level) < 1e-9) low = std::min(low, p.x()), high = std::max(high, p.x());
+      for (const HalfPlane& wall : half_planes(made.cast, view))
+        EXPECT_GE((p - wall.point).dot(wall.normal), -kLine / 2 - 1e-9);
+    }
+    ASSERT_EQ(still.strokes.size(), lines + 1);
+    const Stroke& surface = still.strokes.front();
+    const Point a = still.nodes[std::size_t(surface.begin)].at,
+                b = still.nodes[std::size_t(surface.begin) + 1].at;
+    EXPECT_NEAR(std::abs(a.x() - b.x()), high - low, 1e-9);
+    EXPECT_NEAR(a.y(), level, 1e-9);
+    EXPECT_TRUE(walls || high - low > 1000);
+  }
+}
+
 // on paper the room has no ground of its own: every polygon that stands still is a line of hatching
 TEST(Still, HatchingLiesOutsideTheWallsWithinItsBand) {
   for (const Made& made : {room(8, 4.5), slanted(), wedge(), ground(), valley()}) {

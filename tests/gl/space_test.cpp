@@ -281,6 +281,81 @@ TEST(Space, ABoxThrowsItsShadowOnAnother) {
   EXPECT_LT(top(0.6), top(-3) - 25);
 }
 
+/// A plate over a large one: the edge of its shadow there takes more pixels the higher it is.
+TEST(Space, AShadowOnABodyIsSofterTheHigherItsCasterIs) {
+  Renderer renderer(1920, 1080);
+  const auto edge = [&](double height) {
+    Made made;
+    made.look.ground = false;
+    made.box({0, 0.25, 0}, {1.5, 0.25, 1.5}, "sky");
+    made.box(Vec3(0, 0.5, 0) + height * Vec3(-0.6, 1, 0.42), {0.4, 0.001, 0.4}, "orange");
+    const media::Image image = drawn(renderer, made.picture());
+    const draw::CameraProjection lens = made.depictor().lens(made.now);
+    const auto across = [&](double x) { return brightness(at(image, lens.page({x, 0.5, 0}))); };
+    const double lit = across(0.6), dark = across(0.36);
+    EXPECT_LT(dark, lit - 25);
+    int between = 0;
+    for (double x = 0.36; x < 0.6; x += 0.001) between += across(x) > dark + 5 && across(x) < lit - 5;
+    return between * 0.001;  // m
+  };
+  EXPECT_GT(edge(0.8), 2 * edge(0.1));
+}
+
+/// A ball that turns has lines on it, which go with it; a particle, what is small and what is asked to be
+/// plain have none.
+TEST(Space, ARollingBallShowsHowItTurns) {
+  Renderer renderer(960, 540);
+  const auto ball = [&](double angle, double radius, bool turns, bool axes) {
+    Made made;
+    made.look.ground = false, made.look.axes = axes;
+    const int it = made.body(sim::ShapeKind::ball, {0, 1, 0}, Vec3::Zero(), radius, "blue",
+                             Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vec3::UnitZ())));
+    made.cast.bodies[std::size_t(it)].turns = turns;
+    return drawn(renderer, made.picture());
+  };
+  EXPECT_NE(ball(0.3, 0.4, true, true), ball(0.6, 0.4, true, true));
+  EXPECT_NE(ball(0.3, 0.4, true, true), ball(0.3, 0.4, true, false));
+  EXPECT_EQ(ball(0.3, 0.4, true, false), ball(0.6, 0.4, true, false));
+  EXPECT_EQ(ball(0.3, 0.4, false, true), ball(0.3, 0.4, true, false));
+  EXPECT_EQ(ball(0.3, 0.03, true, true), ball(0.3, 0.03, true, false)) << "about five pixels";
+}
+
+/// A fluid's surface tints what lies under it, and not what rises out of it before it.
+TEST(Space, AFluidIsSeenThrough) {
+  Renderer renderer(640, 360);
+  Made made;
+  made.look.ground = false;
+  made.box({-0.8, 0.2, 0}, {0.2, 0.1, 0.2}, "orange");
+  made.box({0.8, 0.9, 0}, {0.2, 0.3, 0.2}, "orange");
+  const media::Image dry = drawn(renderer, made.picture());
+  made.cast.surface = 0.8;
+  const media::Image wet = drawn(renderer, made.picture());
+  const draw::CameraProjection lens = made.depictor().lens(made.now);
+  const Color sky = *draw::color("sky"), orange = *draw::color("orange");
+  const auto both = [&](const Vec3& place) {
+    return std::pair(at(dry, lens.page(place)), at(wet, lens.page(place)));
+  };
+  const auto [ground, under_water] = both({0, 0, 0});
+  EXPECT_GT(like(under_water, sky), 0.7);
+  const auto [box, drowned] = both({-0.8, 0.3, 0});
+  EXPECT_GT(like(drowned, orange), 0.5);
+  EXPECT_LT(like(drowned, orange), like(box, orange) - 0.001);
+  const auto [top, still_top] = both({0.8, 1.2, 0});
+  EXPECT_EQ(top, still_top);
+}
+
+TEST(Space, OnADarkGroundAShadowIsSeenFromTheLastRow) {
+  Made made;
+  made.look.theme = draw::Theme::screen, made.look.ground = true;
+  made.box({0, 1, 0}, {0.4, 0.1, 0.4}, "orange");
+  Renderer renderer(640, 360);
+  const media::Image image = drawn(renderer, made.picture());
+  const draw::CameraProjection lens = made.depictor().lens(made.now);
+  const Color dark = at(image, lens.page({0.6, 0, -0.42})), lit = at(image, lens.page({-0.6, 0, 0.46}));
+  EXPECT_GT(draw::contrast(lit, dark), 1.6);
+  EXPECT_GT(brightness(dark), 8) << "not black";
+}
+
 TEST(Space, TheSameBytesTwiceAndFromBothBackEnds) {
   OBSCURA_NEEDS_BOTH_BACK_ENDS();
   Renderer osmesa(320, 180, {.backend = Backend::osmesa});

@@ -230,6 +230,29 @@ TEST(JointLoads, ARopePullsWhereItRunsOver) {
   }
 }
 
+// Of a wheel that turns with its rope each piece pulls where it leaves the rim, so that arrows of the two are
+// apart.
+TEST(JointLoads, ARopePullsAtAWheelWhereItLeavesIt) {
+  for (const Manner& way : kManners) {
+    TextRun scene(plane_without_walls(way) +
+                  "[[ball]]\nname = 'wheel'\nradius = 0.5\nmass = 4\nposition = [0, 3]\n"
+                  "[[joint]]\ntype = 'pin'\nbetween = ['wheel', 'room']\n"
+                  "[[particle]]\nname = 'left'\nmass = 1\nposition = [-0.5, 0]\n"
+                  "[[particle]]\nname = 'right'\nmass = 2\nposition = [0.5, 1]\n"
+                  "[[joint]]\ntype = 'pulley'\nbetween = ['left', 'right']\nover = ['wheel']\n");
+    const std::size_t wheel = number_of(scene, "wheel");
+    const sim::Snapshot now = scene.at(0.2);
+    std::vector<sim::Vec3> at;
+    for (std::size_t i = 1; i < now.joints.size(); ++i)
+      for (const auto& hold : now.joints[i].holds)
+        if (hold.body == int(wheel)) at.push_back(hold.at - now.bodies[wheel].position);
+    ASSERT_EQ(at.size(), 2u) << way.name;
+    if (at[0].x() > at[1].x()) std::swap(at[0], at[1]);
+    EXPECT_LT((at[0] - sim::Vec3(-0.5, 0, 0)).norm(), 1e-9) << way.name;
+    EXPECT_LT((at[1] - sim::Vec3(0.5, 0, 0)).norm(), 1e-9) << way.name;
+  }
+}
+
 // What is reported makes each body's acceleration: m a and I alpha from differences of velocities.
 TEST(JointLoads, TogetherMakeTheAccelerationOfEachBody) {
   const std::string linkage =

@@ -380,8 +380,8 @@ draw::List FigureBuilder::in_plane(const draw::Illustrator& depictor, const Cell
     if (panel.ghosts[i] && ghost.shown.in(cell.index) && ghost.shown.has(panel.now.time, film))
       depictor.ghosts(*panel.ghosts[i], draw::kGhost, list, ghost.bodies);
   }
-  const auto paths =
-      draw::path_lines(marks, draw::paths_of(marks, panel.ways, kPathError / view.scale), panel.now, film);
+  const auto paths = draw::path_lines(
+      marks, draw::paths_of(marks, panel.ways, kPathError / view.scale, &panel.now), panel.now, film);
   depictor.draw_lines(view, paths, false, list);
   list.add(picture.moving, 1, {0, 0});
   depictor.draw_lines(view, paths, true, list);
@@ -411,8 +411,8 @@ draw::List FigureBuilder::in_space(const draw::Illustrator& depictor, const Cell
     if (panel.ghosts[i] && ghost.shown.in(cell.index) && ghost.shown.has(panel.now.time, film))
       ghosts.push_back({&*panel.ghosts[i], &ghost.bodies, draw::kGhost});
   }
-  const auto paths =
-      draw::path_lines(marks, draw::paths_of(marks, panel.ways, kPathError / at_target), panel.now, film);
+  const auto paths = draw::path_lines(
+      marks, draw::paths_of(marks, panel.ways, kPathError / at_target, &panel.now), panel.now, film);
   lit.picture = depictor.depict(panel.now, panel.ways, paths, ghosts);
   const double scale = width * draw::kPoint / (1080 * lit.picture.aspect);
   const draw::Point corner(0, panels_.size() * panel.scene.cameras.size() > 1 ? kLetter * draw::kPoint : 0);

@@ -24,8 +24,8 @@ constexpr double kCone = 0.5;           // of the picture's shorter side: how lo
 constexpr double kAxes = 0.36;          // of the picture's shorter side: axes in space
 constexpr double kAslant = 0.05;        // sine of an angle: nearer to each other two arrows are in line
 constexpr double kTail = 1.7;           // widths of an arrow: radius of the dot where it begins
-constexpr double kFull = 0.5;        // of an arrow's growth: from here on its words are as strong as others
-constexpr double kOutOfBall = 0.35;  // of a ball's radius: how far beyond it an arrow's words are as strong
+constexpr double kFull = 0.28;      // of an arrow's growth: from here on its words are as strong as others
+constexpr double kOutOfBall = 0.6;  // of a ball's radius: how far beyond it words of an arrow within it end
 
 constexpr std::size_t kManyNames = 40;                 // from here on a name stands above its body or below
 constexpr double kBeside = 2.3, kBesideInPrint = 2.1;  // gaps: from an arrow to its words
@@ -76,7 +76,8 @@ double Notes::bare(const Point& tail, const Point& tip) {
   return 2;
 }
 
-bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink) {
+bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink,
+                  double inside) {
   std::vector<Arrow> arrows;
   offer(tail, tip, view_.window(), arrow_, arrows);
   if (arrows.empty()) return false;
@@ -87,10 +88,15 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   arrows_.push_back(arrows[0]), inks_.push_back(ink);
   const Point end = film() ? arrows[0].tip : tip;
   placing_.avoid(tail, end, 4);
-  // words come and go with a small arrow
-  if (film()) fade(label, (arrows[0].grow - 0.2) / (kFull - 0.2));
+  // words come and go with the arrow, but are as strong as others while it is there, however small it is
+  if (film()) fade(label, (arrows[0].grow - kSmallest) / (kFull - kSmallest));
+  // those of one that ends within its ball stand where it would leave it; which place they have is chosen for
+  // the others
+  const double length = (end - tail).norm(), reach = (1 + kOutOfBall) * inside;
+  const bool within = film() && !how_.survey && length < reach;
+  const Point beyond = within ? Point(tail + reach / length * (end - tail)) : end;
   word(key, label,
-       Placing::along(tail, end, (film() ? kBeside : kBesideInPrint) * gap_, size(label), point_, film()),
+       Placing::along(tail, beyond, (film() ? kBeside : kBesideInPrint) * gap_, size(label), point_, film()),
        (tail + end) / 2, std::pair(tail, end));
   return true;
 }
@@ -258,7 +264,7 @@ void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
       turn(key, vector, reading, set(reading.signed_value), ink, int(among));
       continue;
     }
-    Formula label_set = set(reading.value.norm());
+    const Formula label_set = set(reading.value.norm());
     if (vector.quantity == Quantity::normal && view_.view()) {
       const Point tail = view_.page(reading.tail);
       arrow(key, tail, tail + normal_ * Point(reading.value.x(), -reading.value.y()).normalized(), label_set,
@@ -270,12 +276,10 @@ void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
                                                                 : 1.0;
       const Vec3 tip = reading.tail + length * reading.value;
       hang(reading.tail, tip);
-      // words of an arrow within its ball would stand on the ball: they come and go with its tip
-      const double radius = vector.body >= 0 ? cast_.bodies[std::size_t(vector.body)].radius : 0;
-      if (film() && radius > 0 &&
-          (reading.tail - now_.bodies[std::size_t(vector.body)].position).norm() < 1e-9)
-        fade(label_set, ((tip - reading.tail).norm() / radius - 1) / kOutOfBall);
-      if (view_.before(tip)) arrow(key, view_.page(reading.tail), view_.page(tip), label_set, ink);
+      double inside = 0;
+      if (vector.body >= 0 && (reading.tail - now_.bodies[std::size_t(vector.body)].position).norm() < 1e-9)
+        inside = cast_.bodies[std::size_t(vector.body)].radius * view_.scale_at(reading.tail);
+      if (view_.before(tip)) arrow(key, view_.page(reading.tail), view_.page(tip), label_set, ink, inside);
     }
   }
 }

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "draw/compose/depict.h"
+#include "draw/picture/way.h"
 
 namespace obscura::draw {
 namespace {
@@ -21,12 +22,13 @@ constexpr double kWay = 0.12;                    // of each unit of its way
 constexpr double kSpeed = 1.7;                   // page units a frame that a label moves by itself
 constexpr double kQuickest = 0.3, kSlowest = 4;  // s: a change
 constexpr double kShortest = 0.6;                // of the length that an arrow would have
-constexpr double kHeadWide = 10;    // page units: of an arrow's head, which is wider than its line
-constexpr double kPathError = 0.2;  // page units
-constexpr double kFaintest = 0.22;  // of a path's oldest end
-constexpr double kShared = 80;      // points: of lying on another label
-constexpr double kOver = 8;         // of each unit of its own arrow that it passes over
-constexpr double kTouches = 120;    // page units: of touching it on the way
+constexpr double kHeadWide = 10;     // page units: of an arrow's head, which is wider than its line
+constexpr double kPathError = 0.2;   // page units
+constexpr double kCurveError = 0.3;  // of a path's error: of the points among which the needed ones are found
+constexpr double kFaintest = 0.22;   // of a path's oldest end
+constexpr double kShared = 80;       // points: of lying on another label
+constexpr double kOver = 8;          // of each unit of its own arrow that it passes over
+constexpr double kTouches = 120;     // page units: of touching it on the way
 
 // In the plane: shortens the arrows of a kind so that those of a film end below the room's ceiling, beyond
 // which the title stands. Of one that would have to be much shorter the head is at the edge. They end above
@@ -291,19 +293,19 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
 }
 
 std::vector<std::vector<sim::Track::Point>> paths_of(
-    const Marks& marks, std::span<const std::shared_ptr<const sim::Track>> tracks, double tolerance) {
+    const Marks& marks, std::span<const std::shared_ptr<const sim::Track>> tracks, double tolerance,
+    const sim::Snapshot* now) {
   std::vector<std::vector<sim::Track::Point>> all;
   for (const Marks::Path& path : marks.paths) {
     std::vector<sim::Track::Point> way;
     for (const auto& track : tracks) {
       const auto at = std::find(track->bodies.begin(), track->bodies.end(), path.at.body);
       if (at == track->bodies.end()) continue;
-      for (sim::Track::Point point : track->points[std::size_t(at - track->bodies.begin())]) {
-        point.place += point.orientation * path.at.local;
+      for (const sim::Track::Point& point : track->points[std::size_t(at - track->bodies.begin())])
         if (way.empty() || point.time > way.back().time) way.push_back(point);
-      }
     }
-    all.push_back(thinned(way, tolerance));
+    if (now && !way.empty() && way.back().time < now->time) way.push_back(end_of_way(path.at.body, *now));
+    all.push_back(thinned(refined(way, path.at.local, kCurveError * tolerance), tolerance));
   }
   return all;
 }

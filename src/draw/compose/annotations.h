@@ -60,10 +60,11 @@ class Annotations {
   std::vector<std::vector<sim::Track::Point>> paths_;  // one a path of the marks, of its point
 };
 
-/// The points of the paths of marks since the run's start, as many as their curves need: none is farther from
-/// the line through them than `tolerance` (m).
+/// The points of the paths of marks since the run's start, up to `now` where it is given, as many as their
+/// curves need: they are no farther than `tolerance` (m) from the line through them.
 std::vector<std::vector<sim::Track::Point>> paths_of(
-    const Marks& marks, std::span<const std::shared_ptr<const sim::Track>> tracks, double tolerance);
+    const Marks& marks, std::span<const std::shared_ptr<const sim::Track>> tracks, double tolerance,
+    const sim::Snapshot* now = nullptr);
 
 /// Those paths up to an instant.
 std::vector<WorldLine> path_lines(const Marks& marks,

@@ -11,6 +11,7 @@
 #include "draw/page/measure.h"
 #include "draw/page/sheet.h"
 #include "draw/picture/formula.h"
+#include "draw/picture/joint_look.h"
 #include "draw/picture/type.h"
 #include "draw/plane/stage.h"
 #include "draw/space/camera.h"
@@ -21,6 +22,8 @@ namespace {
 
 constexpr double kPathLine = 3.6;    // the line of a path, page units at the weight 1
 constexpr double kForceArrow = 0.1;  // of the room's height: an arrow of a usual force
+
+constexpr double kSlenderArm = 0.5;  // of a wheel's radius: half the width of an arm that lies over it
 
 constexpr int kMarks = 100;  // layers up to there are of bodies and what ties them
 
@@ -45,12 +48,35 @@ void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, 
   draw([&] { draw_rounds(stage, view, now, list); });
   draw([&] { draw_gears(stage, view, now, list); });
   draw([&] { draw_racks(stage, view, now, list); });
+  draw([&] {
+    draw_boxes(stage, view, now, list, true);
+    draw_polygons(stage, view, now, list, true);
+  });
   draw([&] { draw_pulleys(stage, view, now, list); });
   draw([&] { draw_pins(stage, view, now, list); });
   draw([&] { draw_contacts(stage, view, now, list); });
   draw([&] { draw_velocities(stage, view, now, list); });
   draw([&] { draw_gone(stage, view, now, list); });
   list.of({});
+}
+
+// of each body whether it is the arm of a gear: what carries its wheels, if it is slender enough to lie over
+// them
+std::vector<char> arms_of(const sim::SceneInfo& cast) {
+  std::vector<char> arm(cast.bodies.size(), 0);
+  for (const sim::SceneInfo::Joint& joint : cast.joints) {
+    if (joint_look(joint.kind).plane != JointMark::teeth || joint.places.size() != 4) continue;
+    for (const auto& [wheel, radius] : {std::pair(0, joint.offset_a), std::pair(2, joint.offset_b)}) {
+      const int of = joint.places[std::size_t(wheel)].body, by = joint.places[std::size_t(wheel) + 1].body;
+      if (!(radius > 0) || of < 0 || by < 0 || cast.bodies[std::size_t(by)].fixed) continue;
+      const sim::SceneInfo::Body& its = cast.bodies[std::size_t(by)];
+      const double thick = its.kind == sim::ShapeKind::box       ? its.half.head<2>().minCoeff()
+                           : its.kind == sim::ShapeKind::capsule ? its.radius
+                                                                 : 1e300;
+      if (thick < kSlenderArm * radius) arm[std::size_t(by)] = 1;
+    }
+  }
+  return arm;
 }
 
 }  // namespace
@@ -92,6 +118,7 @@ Stage::Stage(const sim::SceneInfo& info, const Look& looks_, const Camera& camer
       colours(palette(looks_.theme)),
       layout(page),
       charts(beside) {
+  arm = arms_of(cast);
   const std::vector<char> net = knots(cast);
   auto knot = [&](int body) { return body >= 0 && net[body]; };
 
@@ -425,6 +452,8 @@ void Illustrator::ghosts(const sim::Snapshot& then, double strength, List& list,
   draw_boxes(faded, view, then, list);
   draw_polygons(faded, view, then, list);
   draw_rounds(faded, view, then, list);
+  draw_boxes(faded, view, then, list, true);
+  draw_polygons(faded, view, then, list, true);
   if (faded.layout.clipped) list.unclip();
 }
 

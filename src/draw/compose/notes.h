@@ -60,7 +60,8 @@ class Notes {
   const std::vector<std::vector<Point>>& outlines();
   bool on_body(const Point& p);
   double bare(const Point& tail, const Point& tip);
-  bool arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink);
+  bool arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink,
+             double inside = 0);
   void stroke(const std::vector<Point>& line, double width, Color color, double weight);
   void stroke_through(const std::vector<sim::Vec3>& way, double width, Color color, double weight);
   void by_nodes(const std::vector<sim::Vec3>& way);

@@ -17,6 +17,9 @@ constexpr double kMargin = 36;  // page units at the weight 1, as of the caption
 // page units a point of a plot for print: digits 24 high, to be read from the back row
 constexpr double kType = 33 / 8.5;
 constexpr double kHead = 2.7;    // points
+// of its width: how tall a plot against a quantity is at most at the right, where it would be a strip; of what its axis spans:
+// how far it goes on beyond, so that a line does not run along the other axis
+constexpr double kTallest = 1.1, kBeyondEnds = 0.05;
 constexpr double kAround = 0.8;  // around a dot, points
 constexpr double kFade = 0.008;  // of the run: how long before and after a name changes places it is faint
 
@@ -42,9 +45,18 @@ Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots,
     } else {
       rect = {width - right_ + gap, beside, right_ - gap - inset, each - gap};
       beside += each;
+      if (const double most = kTallest * rect.width; !charts[i].against.empty() && rect.height > most)
+        rect.y += (rect.height - most) / 2, rect.height = most;
     }
     panels_.push_back({charts[i], plots[i], plot_area(plots[i], rect, kType * weight * type_scale), {}});
-    if (charts[i].against.empty()) panels_.back().area.last = seconds;
+    PlotArea& area = panels_.back().area;
+    if (charts[i].against.empty()) {
+      area.last = seconds;
+    } else if (!area.log) {
+      const double more = kBeyondEnds * (area.last - area.first);
+      if (area.first != 0) area.first -= more;
+      if (area.last != 0) area.last += more;
+    }
   }
   // those above each other show one time at one place
   for (const Chart::Place place : {Chart::Place::below, Chart::Place::right}) {

@@ -28,7 +28,7 @@ inline constexpr Subject kSeenLines{Subject::What::layer, -1};
 struct Solids {
   struct Vertex {
     std::array<float, 4> at;  // (x w, y w, z w, w): page units, z from 0 at the farthest to 1
-    Color lit, shaded;        // opaque
+    Color lit, shaded;        // opaque, but for a fluid's
     std::array<float, 3>
         light;  // where the light sees it: 0 to 1 over Solids' shadow map, the third away from it
     std::array<float, 2> slope;  // how the third grows with the first and second along the surface
@@ -42,11 +42,15 @@ struct Solids {
   };
 
   Rect window;
-  bool grained = false;  // whether a body is of a material with a pattern
+  bool grained = false;  // whether a body is of a material with a pattern,
+  bool marked = false;   // and whether one has lines that show how it turns
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> triangles;       // that nothing can throw a shadow on
   std::vector<std::uint32_t> shadowed;        // that something may
+  std::vector<std::uint32_t> water;           // the surface of a fluid: translucent, over the others
   std::vector<std::array<float, 3>> casters;  // triangles turned away from the light, as `light` of a vertex
+  std::array<float, 2>
+      soft{};  // of a shadow in that map: half its edge's width a distance to the caster, and at most
   std::vector<Shade> shades;
   std::vector<Point> points;   // page units
   Color shade{0, 0, 0, 0};     // laid over the ground where no ray reaches it

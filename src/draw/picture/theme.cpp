@@ -24,7 +24,9 @@ Palette palette(Theme theme) {
             .way = {0x88, 0x8E, 0x95},
             .hatch = {0x8B, 0x94, 0x9E},
             .velocity = green,
-            .force = *color("vermilion")};
+            .force = *color("vermilion"),
+            .water = mix(kWhite, *color("sky"), 0.17),
+            .surface = mix(kWhite, *color("blue"), 0.62)};
   }
   return {.ground = {0x0E, 0x13, 0x18},
           .room = {0x13, 0x1A, 0x21},
@@ -36,7 +38,9 @@ Palette palette(Theme theme) {
           .hatch = {0x5A, 0x67, 0x74},
           // lighter, to be seen on a green body
           .velocity = mix(green, kWhite, 0.4),
-          .force = *color("vermilion")};
+          .force = *color("vermilion"),
+          .water = mix({0x13, 0x1A, 0x21}, *color("sky"), 0.16),
+          .surface = mix({0x13, 0x1A, 0x21}, *color("sky"), 0.7)};
 }
 
 Paint paint(Color own, Theme theme) {

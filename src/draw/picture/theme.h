@@ -15,8 +15,9 @@ struct Palette {
   Color spring;
   Color way;  // the hand's dotted path
   Color hatch;
-  Color velocity;  // arrows of velocity
-  Color force;     // and of forces
+  Color velocity;        // arrows of velocity
+  Color force;           // and of forces
+  Color water, surface;  // a fluid in the plane, and the line of its surface
 };
 
 /// The colours of one body.
@@ -27,7 +28,7 @@ struct Paint {
 /// Weights in page units at the weight 1 of a landscape page (layout.h), as in print on a slide.
 inline constexpr double kWallLine = 3.2, kOutline = 2.8, kAxisLine = 2.4, kSpringLine = 3.2,
                         kThinSpring = 2.2, kNetLine = 2.0, kArrowLine = 4.0, kHatchLine = 1.6, kRod = 5.2,
-                        kRope = 2.4, kTrailLine = 6.4;
+                        kRope = 2.4, kTrailLine = 6.4, kSurfaceLine = 2.4;
 inline constexpr double kHatchStep = 14,
                         kBand = 24;  // along an upright wall; from the wall to the band's edge
 inline constexpr double kDot = 8, kJoint = 5,

@@ -65,7 +65,7 @@ void offer(const Point& tail, Point tip, const Rect& window, double weight, std:
     tip = tail + part * (tip - tail);
   }
   const double grow = std::min(1.0, (tip - tail).norm() / (kWhole * kHead * weight));
-  if (grow > 0.2) arrows.push_back({tail, tip, grow});
+  if (grow > kSmallest) arrows.push_back({tail, tip, grow});
 }
 
 // one kind after another: few batches

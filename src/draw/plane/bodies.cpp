@@ -35,10 +35,11 @@ void mark_turns(const Stage& stage, const View& view, const sim::Snapshot& now, 
 
 }  // namespace
 
-void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, List& list, bool arms) {
   const double weight = stage.layout.weight;
   list.boxes.reserve(stage.boxes.size());
   for (int i : stage.boxes) {
+    if (bool(stage.arm[i]) != arms) continue;
     const sim::Snapshot::Body& body = now.bodies[i];
     const Point half = view.scale * stage.cast.bodies[i].half.head<2>();
     const Point center = view.page(body.position);

@@ -58,7 +58,8 @@ double room_for(const Stage& stage, const View& view, const sim::SceneInfo::Join
   return view.scale * least;
 }
 
-constexpr double kBracket = 24, kHatchHigh = 12;  // page units: half its width, how high its hatching is
+constexpr double kBracket = 24, kHatchHigh = 12;     // page units: half its width, how high its hatching is
+constexpr double kHung = 1.3, kLeastBracket = 0.45;  // of what hangs there: not wider; of its width: nor less
 constexpr double kNearWall = 14;  // page units: what is made fast so near to a wall hangs from that
 
 /// Whether a body that is held fast is at a place of the page, or as near as a bracket is wide.
@@ -91,10 +92,20 @@ Point made_fast(const Stage& stage, const Vec3& start, bool spring) {
   return up;
 }
 
+/// How large a bracket is, of its full size: modest against what is made fast there.
+double share_of_bracket(const Stage& stage, const View& view, int body) {
+  const sim::SceneInfo::Body& its = stage.cast.bodies[std::size_t(body)];
+  if (!its.parts.empty()) return 1;
+  double far = its.radius + its.half.norm();
+  for (const Vec3& vertex : its.vertices) far = std::max(far, vertex.norm());
+  const double dot = stage.dots[std::size_t(body)], size = dot > 0 ? dot : view.scale * far;
+  return std::clamp(kHung * size / (kBracket * stage.layout.weight), kLeastBracket, 1.0);
+}
+
 /// A piece of ceiling, floor or wall at a place of the room where something is made fast, `out` into it; none
 /// near a wall.
 void draw_bracket(const Stage& stage, const View& view, const sim::Snapshot& now,
-                  const std::vector<HalfPlane>& walls, const Point& at, const Point& out,
+                  const std::vector<HalfPlane>& walls, const Point& at, const Point& out, double share,
                   std::vector<Point>& hatched, List& list) {
   const double weight = stage.layout.weight;
   const Point along(-out.y(), out.x());
@@ -103,7 +114,7 @@ void draw_bracket(const Stage& stage, const View& view, const sim::Snapshot& now
     if ((at - wall.point).dot(wall.normal) < kNearWall * weight) return;
   if (held_there(stage, view, now, at)) return;
   const Color color = stage.colours.wall, hatch = stage.colours.hatch;
-  const double half = kBracket * weight, high = kHatchHigh * weight;
+  const double half = share * kBracket * weight, high = (0.4 + 0.6 * share) * kHatchHigh * weight;
   // brackets beside each other have their hatching in common: its lines are at fixed places
   const double step = 0.7 * kHatchStep * weight, own = (at - view.origin).dot(along);
   const Point home = at - own * along;
@@ -172,7 +183,8 @@ void draw_brackets(const Stage& stage, const View& view, const sim::Snapshot& no
     if ((spring.a < 0) == (spring.b < 0)) continue;
     const bool first = spring.a < 0;
     draw_bracket(stage, view, now, walls, view.page(first ? now.springs[i].a : now.springs[i].b),
-                 made_fast(stage, first ? spring.start : Vec3(-spring.start), true), hatched, list);
+                 made_fast(stage, first ? spring.start : Vec3(-spring.start), true),
+                 share_of_bracket(stage, view, first ? spring.b : spring.a), hatched, list);
   }
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
     const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
@@ -180,7 +192,8 @@ void draw_brackets(const Stage& stage, const View& view, const sim::Snapshot& no
     if ((joint.a < 0) == (joint.b < 0)) continue;
     const bool first = joint.a < 0;
     draw_bracket(stage, view, now, walls, view.page(first ? now.joints[i].a : now.joints[i].b),
-                 made_fast(stage, first ? joint.start : Vec3(-joint.start), false), hatched, list);
+                 made_fast(stage, first ? joint.start : Vec3(-joint.start), false),
+                 share_of_bracket(stage, view, first ? joint.b : joint.a), hatched, list);
   }
 }
 

@@ -28,10 +28,12 @@ struct Stage {
   std::vector<int> boxes, polygons, rounds;       // bodies by form; a compound is among the polygons
   std::vector<std::vector<std::uint64_t>> seams;  // of each body's parts: bit e of part p is set where its
                                                   // edge e lies within another part
-  std::vector<int> arrows;                        // bodies with velocity arrows
-  double force_scale = 0;                         // m/N
-  std::vector<Coil> coils;                        // one a spring; turns 0: a plain line
-  std::vector<Coil> hands;                        // one a mouse
+  std::vector<char> arm;    // one a body: slender, and carries toothed wheels, so that it lies
+                            // over them
+  std::vector<int> arrows;  // bodies with velocity arrows
+  double force_scale = 0;   // m/N
+  std::vector<Coil> coils;  // one a spring; turns 0: a plain line
+  std::vector<Coil> hands;  // one a mouse
 
   Stage(const sim::SceneInfo& cast, const Look& look, const Camera& camera, const Layout& layout,
         const Charts& charts = {});
@@ -48,8 +50,9 @@ std::vector<std::uint64_t> seams_of(const sim::SceneInfo::Body& body);
 
 using Ways = std::span<const std::shared_ptr<const sim::Track>>;
 
-/// The way of a body since `from` (s), up to now.
-std::vector<sim::Track::Point> way_of(int body, double from, const sim::Snapshot& now, Ways ways);
+/// The way of a body since `from` (s), up to now, as round as its motion to `tolerance` (m).
+std::vector<sim::Track::Point> way_of(int body, double from, const sim::Snapshot& now, Ways ways,
+                                      double tolerance);
 
 /// The points of a way between two of its points that its curve needs to be no farther than `least` (m) from
 /// the line through them, in order.
@@ -65,6 +68,9 @@ double newton(const sim::SceneInfo& cast);
 
 /// More springs than these, nets apart, are drawn as lines.
 inline constexpr int kMany = 12;
+
+/// Of an arrow's growth: smaller ones are not drawn.
+inline constexpr double kSmallest = 0.2;
 
 /// An arrow from `tail` to `tip` on the page.
 struct Arrow {
@@ -120,8 +126,11 @@ void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now
 /// Arrows at the picture's edge towards bodies with trails that have left it.
 void draw_gone(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
-void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
-void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+/// `arms`: those of Stage::arm, else all others.
+void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, List& list,
+                bool arms = false);
+void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& now, List& list,
+                   bool arms = false);
 void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 

@@ -154,18 +154,40 @@ void draw_walls(const Convex& room, double width, Color color, List& list) {
   }
 }
 
+/// A fluid at rest: what of the room lies below its level, and the line of its surface.
+void draw_fluid(const Stage& stage, const View& view, const Convex& room, List& list) {
+  constexpr int kSurface = 1 << 20;  // its side: above those of all walls
+  const Convex fluid = cut(room, {view.page({0, *stage.cast.surface, 0}), Point(0, 1)}, kSurface);
+  if (fluid.empty()) return;
+  list.add(fluid.outline(), stage.colours.water);
+  const double width = kSurfaceLine * stage.layout.weight;
+  for (std::size_t i = 0; i < fluid.corners.size(); ++i)
+    if (fluid.corners[i].side == kSurface)
+      list.add({{fluid.corners[i].at, width, stage.colours.surface},
+                {fluid.corners[(i + 1) % fluid.corners.size()].at, width, stage.colours.surface}},
+               Cap::butt);
+}
+
 }  // namespace
 
 void draw_still(const Stage& stage, const View& view, List& list) {
   const double weight = stage.layout.weight;
   const Rect& w = view.window;
+  const Rect page{w.x - kBeyond, w.y - kBeyond, w.width + 2 * kBeyond, w.height + 2 * kBeyond};
+  if (stage.cast.walls.empty() && stage.cast.surface) {
+    if (stage.layout.clipped) list.clip(w);
+    list.of({Subject::What::layer, 0});
+    draw_fluid(stage, view, border(page), list);
+    list.unclip();
+    list.of({});
+  }
   if (!stage.cast.walls.empty()) {
-    const Rect page{w.x - kBeyond, w.y - kBeyond, w.width + 2 * kBeyond, w.height + 2 * kBeyond};
     const std::vector<HalfPlane> walls = half_planes(stage.cast, view);
     const Convex room = cut_all(page, walls, -kWallLine * weight / 2);
     if (stage.layout.clipped) list.clip(w);
     list.of({Subject::What::layer, 0});
     if (!(stage.colours.room == stage.colours.ground)) list.add(room.outline(), stage.colours.room);
+    if (stage.cast.surface && !room.empty()) draw_fluid(stage, view, room, list);
     if (stage.look.hatching) hatch(walls, view, page, weight, stage.colours.hatch, list);
     if (!room.empty()) draw_walls(room, kWallLine * weight, stage.colours.wall, list);
     list.unclip();

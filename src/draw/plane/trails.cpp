@@ -1,14 +1,15 @@
 // A trail of duration T: a body's way from t - T to t, at age a as wide as W (0.25 + 0.75 s) and of a colour
 // s^1.3 of the way from its faintest to its own, s = 1 - a / T. Its nodes are chosen on the physics clock,
-// the first point of each T/240 and every cusp, so that they do not wander from frame to frame; where a long
-// trail bends between two of them, points between are added until it is as round as the motion. Drawn by
-// minimum or maximum: where pieces overlap nothing shows.
+// the first point of each T/240 and every cusp, so that they do not wander from frame to frame; where a
+// trail bends between two of them, points between are added until it is as round as the motion
+// (draw/picture/way.h). Drawn by minimum or maximum: where pieces overlap nothing shows.
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <utility>
 
+#include "draw/picture/way.h"
 #include "draw/plane/stage.h"
 
 namespace obscura::draw {
@@ -17,7 +18,6 @@ namespace {
 constexpr int kTrailPieces = 240;
 constexpr double kCusp = 0.9;   // cosine of a turn that breaks the line
 constexpr double kClose = 0.5;  // page units: nearer points are one
-constexpr double kLong = 10;    // s: of shorter trails the fixed times are near enough to each other
 constexpr double kGone = 44,
                  kGoneEdge = 10;  // page units: an arrow to what has left, and from its tip to the edge
 constexpr double kBent = 0.4;  // page units: farther from the line through its neighbours a point is needed
@@ -43,7 +43,7 @@ void bends(const std::vector<sim::Track::Point>& way, std::size_t a, std::size_t
   bends(way, at, b, least, add);
 }
 
-Way way_of(int body, double from, const sim::Snapshot& now, Ways ways) {
+Way way_of(int body, double from, const sim::Snapshot& now, Ways ways, double tolerance) {
   Way way;
   for (const auto& track : ways) {
     const auto at = std::find(track->bodies.begin(), track->bodies.end(), body);
@@ -57,7 +57,10 @@ Way way_of(int body, double from, const sim::Snapshot& now, Ways ways) {
       if (way.empty() || first->time > way.back().time) way.push_back(*first);
     }
   }
-  way.push_back({now.time, now.bodies[body].position});
+  way.push_back(end_of_way(body, now));
+  way = refined(way, sim::Vec3::Zero(), tolerance);
+  const auto begin = std::find_if(way.begin(), way.end(), [&](const auto& p) { return p.time > from; });
+  if (begin - way.begin() > 1) way.erase(way.begin(), begin - 1);
   if (way.size() > 1 && way[0].time < from) {
     const double part = (from - way[0].time) / (way[1].time - way[0].time);
     way[0] = {from, way[0].place + part * (way[1].place - way[0].place)};
@@ -72,7 +75,7 @@ void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now,
   for (std::size_t i = 0; i < stage.look.bodies.size() && i < now.bodies.size(); ++i) {
     const double lasting = stage.look.bodies[i].trail;
     if (!(lasting > 0)) continue;
-    const Way way = way_of(int(i), now.time - lasting, now, ways);
+    const Way way = way_of(int(i), now.time - lasting, now, ways, kBent / view.scale);
     const double own = stage.dots[i] > 0 ? stage.dots[i] : view.scale * stage.cast.bodies[i].radius;
     const sim::ShapeKind kind = stage.cast.bodies[i].kind;
     const bool round = kind == sim::ShapeKind::point || kind == sim::ShapeKind::ball;
@@ -96,7 +99,7 @@ void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now,
       }
       if (k > 0 && k + 1 < way.size() && !cusp && here == piece) continue;
       piece = here;
-      if (!chosen.empty() && lasting > kLong)
+      if (!chosen.empty())
         bends(way, chosen.back().first, k, kBent / view.scale,
               [&](std::size_t between) { chosen.emplace_back(between, false); });
       chosen.emplace_back(k, cusp);

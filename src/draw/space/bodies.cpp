@@ -15,11 +15,11 @@ using sim::Vec3;
 
 constexpr double kEdgeLine = 2.3;                            // page units
 constexpr double kSilhouetteLine = 1.3, kCreaseLine = 0.75;  // of that
-constexpr double kBracket = 20;          // page units: half a plate from which something hangs
+constexpr double kBracket = 20;                      // page units: half a plate from which something hangs
+constexpr double kHung = 1.3, kLeastBracket = 0.45;  // of what hangs there: not wider; of its size: nor less
 constexpr double kFromAbove = 0.85;      // sine of the camera's elevation, from which on there are none
 constexpr int kBracketNumber = 1 << 29;  // theirs in sight, above those of all others
 constexpr double kThinEdge = 0.11;       // of a body's thickness: an outline is not wider
-constexpr double kCrease = 0.94;         // cosine of a turn between faces that shows as an edge
 constexpr double kAround = 60;           // page units outside the window where things are still drawn
 constexpr double kLeast = 1.6;           // radius of what is too small to see
 
@@ -54,14 +54,21 @@ Shaded surface(const SpaceFrame& s, Color own, const Vec3& place, const Vec3& no
                : shade(own, s.stage.look.theme, s.stage.light, normal);
 }
 
-/// The faces of a polyhedron that look at the eye.
-void add_faces(SpaceFrame& s, const Polyhedron& body, Color own) {
-  for (const Polyhedron::Face& face : body.faces) {
+/// The faces of a polyhedron that look at the eye; `turn` takes `normals`, those of a round surface, to the
+/// world.
+void add_faces(SpaceFrame& s, const Polyhedron& body, Color own,
+               const std::vector<std::vector<Vec3>>& normals = {},
+               const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity()) {
+  for (std::size_t f = 0; f < body.faces.size(); ++f) {
+    const Polyhedron::Face& face = body.faces[f];
     const Vec3& place = body.vertices[face.loop[0]];
     if (face.normal.dot(s.lens.perspective() ? Vec3(s.lens.eye() - place) : s.lens.back) <= 0) continue;
     const auto first = std::uint32_t(s.corners.size());
-    for (int v : face.loop)
-      corner(s, body.vertices[v], face.normal, surface(s, own, body.vertices[v], face.normal));
+    for (std::size_t i = 0; i < face.loop.size(); ++i) {
+      const Vec3& at = body.vertices[face.loop[i]];
+      corner(s, at, face.normal,
+             surface(s, own, at, normals.empty() ? face.normal : Vec3(turn * normals[f][i])));
+    }
     for (std::uint32_t i = 2; i < face.loop.size(); ++i)
       for (std::uint32_t k : {first, first + i - 1, first + i}) s.triangles.push_back(k);
   }
@@ -214,12 +221,13 @@ void add_bodies(SpaceFrame& s) {
     const Color own = s.stage.own[piece.body];
     switch (piece.form) {
       case Piece::Form::polyhedron: {
-        s.placed[i] = piece.flat.placed(body.orientation.toRotationMatrix(), body.position);
+        const Eigen::Matrix3d turn = body.orientation.toRotationMatrix();
+        s.placed[i] = piece.flat.placed(turn, body.position);
         Vec3 middle = Vec3::Zero();
         for (const Vec3& v : s.placed[i].vertices) middle += v / double(s.placed[i].vertices.size());
         begin(s, middle, piece.reach, i);
         if (in_window(s.lens, middle, piece.reach)) {
-          add_faces(s, s.placed[i], own);
+          add_faces(s, s.placed[i], own, piece.normals, turn);
           s.sight.add(s.placed[i], i, piece.body);
         }
         end(s);
@@ -345,9 +353,9 @@ void add_brackets(SpaceFrame& s) {
   const Vec3 up = -cast.gravity.normalized();
   // from above a plate would hide what hangs from it
   if (s.lens.back.dot(up) > kFromAbove) return;
-  const double half = kBracket * s.stage.layout.weight * s.zoom / s.lens.scale, thick = 0.3 * half;
+  const double whole = kBracket * s.stage.layout.weight * s.zoom / s.lens.scale;
   const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), up).toRotationMatrix();
-  const auto held = [&](const Vec3& at) {
+  const auto held = [&](const Vec3& at, double half) {
     for (const sim::SceneInfo::Wall& wall : cast.walls)
       if ((at - wall.point).dot(wall.normal.normalized()) < 2 * half) return true;
     for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
@@ -357,11 +365,21 @@ void add_brackets(SpaceFrame& s) {
     }
     return false;
   };
-  const auto add = [&](const Vec3& at) {
+  // modest against what is made fast there
+  std::vector<double> far(cast.bodies.size(), 0);
+  for (const Piece& piece : s.stage.pieces) {
+    const double dot = s.stage.dots[std::size_t(piece.body)];
+    far[std::size_t(piece.body)] =
+        std::max(far[std::size_t(piece.body)],
+                 dot > 0 ? dot * whole / (kBracket * s.stage.layout.weight) : piece.reach);
+  }
+  const auto add = [&](const Vec3& at, int hung) {
+    const double half = std::clamp(kHung * far[std::size_t(hung)], kLeastBracket * whole, whole),
+                 thick = 0.3 * half;
     const Vec3 center = at + thick * up;
     const double reach = 2 * half;
-    if (!held(at)) s.solids.plates.push_back({center, half, thick});
-    if (held(at) || !in_window(s.lens, center, reach) || s.lens.depth(center) < 1e-2) return;
+    if (!held(at, half)) s.solids.plates.push_back({center, half, thick});
+    if (held(at, half) || !in_window(s.lens, center, reach) || s.lens.depth(center) < 1e-2) return;
     const Polyhedron plate = box({half, thick, half}).placed(turn, center);
     begin(s, center, reach, -1);
     add_faces(s, plate, neutral(s.stage.look.theme));
@@ -371,14 +389,15 @@ void add_brackets(SpaceFrame& s) {
   };
   for (std::size_t i = 0; i < cast.springs.size() && i < s.now.springs.size(); ++i) {
     const sim::SceneInfo::Spring& spring = cast.springs[i];
-    if ((spring.a < 0) != (spring.b < 0)) add(spring.a < 0 ? s.now.springs[i].a : s.now.springs[i].b);
+    if ((spring.a < 0) != (spring.b < 0))
+      add(spring.a < 0 ? s.now.springs[i].a : s.now.springs[i].b, spring.a < 0 ? spring.b : spring.a);
   }
   for (std::size_t i = 0; i < cast.joints.size() && i < s.now.joints.size(); ++i) {
     const sim::SceneInfo::Joint& joint = cast.joints[i];
     const JointMark mark = joint_look(joint.kind).space;
     if (s.now.joints[i].broken || (joint.a < 0) == (joint.b < 0)) continue;
     if (mark != JointMark::line && mark != JointMark::rope && mark != JointMark::dot) continue;
-    add(joint.a < 0 ? s.now.joints[i].a : s.now.joints[i].b);
+    add(joint.a < 0 ? s.now.joints[i].a : s.now.joints[i].b, joint.a < 0 ? joint.b : joint.a);
   }
 }
 

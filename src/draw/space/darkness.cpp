@@ -93,11 +93,23 @@ void Darkness::lay(const Chunk& chunk, std::size_t k, std::vector<std::uint32_t>
 
   // rows of pieces from the first corner to the edge of the other two
   const int n = pieces(body, places);
+  const auto same = [&](const Corner& c) {
+    return c.color.lit == corners[0].color.lit && c.color.shaded == corners[0].color.shaded;
+  };
+  const bool even = same(corners[1]) && same(corners[2]);
   const auto first = std::uint32_t(frame_.corners.size());
   for (int row = 0; row <= n; ++row)
     for (int i = 0; i <= row; ++i) {
       Corner corner = corners[0];
       corner.place += (double(row - i) * (places[1] - places[0]) + double(i) * (places[2] - places[0])) / n;
+      // of a round surface the colours differ
+      const auto between = [&](Color Shaded::*of) {
+        if (even) return corners[0].color.*of;
+        const double along = row > 0 ? double(i) / row : 0;
+        return mix(corners[0].color.*of, mix(corners[1].color.*of, corners[2].color.*of, along),
+                   double(row) / n);
+      };
+      corner.color = {between(&Shaded::lit), between(&Shaded::shaded)};
       darken(corner, body, others_);
       frame_.corners.push_back(corner);
     }

@@ -20,7 +20,7 @@ constexpr int kPieces = 28;     // of a line that fades
 constexpr double kPool = 0.62;  // of the width that is shown: the radius of the pool of light
 constexpr double kRow = 4;      // page units: the height of a row of it,
 constexpr int kColumns = 48;    // and its pieces
-constexpr Color kPoolInk{0x5A, 0x6B, 0x7C, 0x70};
+constexpr Color kPoolInk{0x6A, 0x7C, 0x8E, 0x80};
 
 Color faded(Color c, double alpha) {
   c.a = std::uint8_t(std::lround(c.a * std::clamp(alpha, 0.0, 1.0)));

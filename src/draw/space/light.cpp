@@ -21,12 +21,12 @@ namespace {
 
 using sim::Vec3;
 
-constexpr double kSpread = 0.10;  // radius of the light's disc at distance 1
-constexpr double kFoot = 0.35;    // of a ball's radius: where it is near the ground
-constexpr double kFall = 1.6;     // of the darkness around a contact: how much sooner than straight it falls
-constexpr double kNear = 1e-3;    // least depth over the target's
-constexpr double kSharp = 0.6;    // page units: shadows softer than this take more rays
-constexpr double kLevel = 0.05;   // light that comes from lower throws no shadows on the ground
+constexpr double kFine = 0.08;   // of kSpread: of the disc that lights thin rods
+constexpr double kFoot = 0.35;   // of a ball's radius: where it is near the ground
+constexpr double kFall = 1.6;    // of the darkness around a contact: how much sooner than straight it falls
+constexpr double kNear = 1e-3;   // least depth over the target's
+constexpr double kSharp = 0.6;   // page units: shadows softer than this take more rays
+constexpr double kLevel = 0.05;  // light that comes from lower throws no shadows on the ground
 
 /// From dark to bright, see above.
 struct Tones {
@@ -83,7 +83,8 @@ Light light(const Vec3& toward) {
   for (int i = 0; i < kRays; ++i) {
     // a sunflower: even over the disc, without rows
     const double r = kSpread * std::sqrt((i + 0.5) / kRays), a = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    l.rays[i] = l.toward + r * (std::cos(a) * side + std::sin(a) * up);
+    const Vec3 off = r * (std::cos(a) * side + std::sin(a) * up);
+    l.rays[i] = l.toward + off, l.fine[i] = l.toward + kFine * off;
   }
   return l;
 }
@@ -136,7 +137,7 @@ GroundShadow::GroundShadow(const Ground& ground, const Light& light, const Camer
     : ground_(ground), light_(light), lens_(lens), slope_(light.toward.dot(ground.normal)) {
   plumb_ = ray(ground.normal);
   if (slope_ <= kLevel) return;
-  for (int i = 0; i < kRays; ++i) rays_[i] = ray(light.rays[i]);
+  for (int i = 0; i < kRays; ++i) rays_[i] = ray(light.rays[i]), fine_[i] = ray(light.fine[i]);
   rays_[kRays] = ray(light.toward);
 }
 
@@ -158,7 +159,7 @@ GroundShadow::Ray GroundShadow::ray(const Vec3& along) const {
 }
 
 void GroundShadow::cast(std::span<const Vec3> corners, double radius, bool many, std::uint32_t rays,
-                        Solids& solids) {
+                        bool fine, Solids& solids) {
   if (slope_ <= kLevel) return;
   // bodies under the ground cast no shadow on it
   double high = -1e300;
@@ -173,12 +174,12 @@ void GroundShadow::cast(std::span<const Vec3> corners, double radius, bool many,
 
   // a sharp shadow takes one ray for all, a soft one each
   const double depth = std::max((seen_[0] + heights_[0] * rays_[kRays].down).z(), kNear);
-  const double soft = 2 * kSpread * high / (slope_ * slope_) * lens_.scale / depth;
+  const double soft = 2 * (fine ? kFine : 1) * kSpread * high / (slope_ * slope_) * lens_.scale / depth;
   const int share = soft < kSharp ? kRays : soft < 4 * kSharp ? 4 : soft < 16 * kSharp || many ? 2 : 1;
   for (int i = 0; i < kRays; i += share) {
     const std::uint32_t own = share == kRays ? ~0u : ((1u << share) - 1) << i;
     if (!(own & rays)) continue;
-    const Ray& ray = rays_[share == kRays ? kRays : i];
+    const Ray& ray = share == kRays ? rays_[kRays] : fine ? fine_[std::size_t(i)] : rays_[std::size_t(i)];
     cast_.clear();
     bool behind = false;
     const auto add = [&](const Vec3& place) {

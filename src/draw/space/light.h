@@ -17,7 +17,12 @@ struct Light {
   sim::Vec3 toward;                   // the light, unit
   sim::Vec3 across;                   // a weak light from there tells faces apart that the other one misses
   std::array<sim::Vec3, kRays> rays;  // towards places of its disc, not unit
+  std::array<sim::Vec3, kRays>
+      fine;  // of a smaller disc, for what is so thin that its shadow would be a smudge
 };
+
+/// Radius of the light's disc at distance 1.
+inline constexpr double kSpread = 0.10;
 
 /// `toward`: a direction to the light; from above.
 Light light(const sim::Vec3& toward);
@@ -54,7 +59,15 @@ class GroundShadow {
 
   /// Adds the shadow of a convex body that has these corners, each a ball of `radius`, and stops `rays`. With
   /// `many` bodies every second ray is enough.
-  void cast(std::span<const sim::Vec3> corners, double radius, bool many, std::uint32_t rays, Solids& solids);
+  void cast(std::span<const sim::Vec3> corners, double radius, bool many, std::uint32_t rays,
+            Solids& solids) {
+    cast(corners, radius, many, rays, false, solids);
+  }
+  /// The same of a thin rod: of a smaller light.
+  void cast_fine(std::span<const sim::Vec3> corners, double radius, bool many, std::uint32_t rays,
+                 Solids& solids) {
+    cast(corners, radius, many, rays, true, solids);
+  }
 
   /// The ground is darker around where such a body is near it, up to `reach` from it, m: a ray each for so
   /// many distances, all that is nearer than that.
@@ -68,13 +81,16 @@ class GroundShadow {
     std::array<sim::Vec3, kRim> round;  // the rim of the shadow of a ball of 1 m
   };
   Ray ray(const sim::Vec3& along) const;
+  void cast(std::span<const sim::Vec3> corners, double radius, bool many, std::uint32_t rays, bool fine,
+            Solids& solids);
 
   Ground ground_;
   Light light_;
   CameraProjection lens_;
   double slope_;                     // how straight the light comes down
   std::array<Ray, kRays + 1> rays_;  // the last one the light's middle
-  Ray plumb_;                        // straight down
+  std::array<Ray, kRays> fine_;
+  Ray plumb_;  // straight down
   std::vector<sim::Vec3> seen_;
   std::vector<double> heights_;
   std::vector<Point> cast_, outline_;

@@ -30,7 +30,7 @@ void trace_trails(SpaceFrame& s, Ways ways) {
   for (std::size_t i = 0; i < stage.look.bodies.size() && i < s.now.bodies.size(); ++i) {
     const double lasting = stage.look.bodies[i].trail;
     if (!(lasting > 0)) continue;
-    const auto way = way_of(int(i), s.now.time - lasting, s.now, ways);
+    const auto way = way_of(int(i), s.now.time - lasting, s.now, ways, kBent / s.lens.scale);
     const Color strong = paint(stage.own[i], stage.look.theme).trail, faint = faintest(strong, stage.colours);
     const auto age = [&](const sim::Track::Point& p) {
       return std::clamp(1 - (s.now.time - p.time) / lasting, 0.0, 1.0);

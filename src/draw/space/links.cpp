@@ -166,11 +166,15 @@ void add_links(SpaceFrame& s) {
         break;
       }
       case JointMark::dot:
-        // within what it holds together where that is slender
+        // within what it holds together where that is slender; of the body's own dark, or it would be a bead
+        // on it
         add_ball(
             s, at.a,
             std::min(0.8 * kPin * weight * metre, kWithin * std::min(slender(joint.a), slender(joint.b))),
-            color, number);
+            joint.a < 0 && joint.b < 0
+                ? color
+                : edge(s.stage.own[std::size_t(std::max(joint.a, joint.b))], s.stage.look.theme),
+            number);
         break;
     }
   }

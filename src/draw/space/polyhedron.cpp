@@ -50,6 +50,25 @@ Polyhedron Polyhedron::placed(const Eigen::Matrix3d& turn, const Vec3& at) const
   return body;
 }
 
+std::vector<std::vector<Vec3>> round_normals(const Polyhedron& body) {
+  const auto one = [&](int f, int g) { return body.faces[f].normal.dot(body.faces[g].normal) > kCrease; };
+  if (std::none_of(body.edges.begin(), body.edges.end(),
+                   [&](const Polyhedron::Edge& e) { return e.right >= 0 && one(e.left, e.right); }))
+    return {};
+  std::vector<std::vector<int>> at(body.vertices.size());  // the faces of each vertex
+  for (int f = 0; f < int(body.faces.size()); ++f)
+    for (int v : body.faces[f].loop) at[v].push_back(f);
+  std::vector<std::vector<Vec3>> normals(body.faces.size());
+  for (int f = 0; f < int(body.faces.size()); ++f)
+    for (int v : body.faces[f].loop) {
+      Vec3 sum = Vec3::Zero();
+      for (int g : at[v])
+        if (one(f, g)) sum += body.faces[g].normal;
+      normals[f].push_back(sum.normalized());
+    }
+  return normals;
+}
+
 Polyhedron box(const Vec3& half) {
   Polyhedron body;
   for (int i = 0; i < 8; ++i)

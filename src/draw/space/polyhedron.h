@@ -27,6 +27,14 @@ struct Polyhedron {
   Polyhedron placed(const Eigen::Matrix3d& turn, const sim::Vec3& at) const;
 };
 
+/// An edge whose faces turn by less than this cosine says shows; other faces are pieces of one round surface.
+inline constexpr double kCrease = 0.92;
+
+/// For each face, at each vertex of its loop, the unit normal of the round surface that the faces stand for:
+/// the mean of those faces there that turn from it by no more than an edge that does not show. Empty where
+/// all are flat.
+std::vector<std::vector<sim::Vec3>> round_normals(const Polyhedron& body);
+
 /// A box about the origin.
 Polyhedron box(const sim::Vec3& half);
 

@@ -22,10 +22,10 @@ using sim::Vec3;
 // of a body's thickness, and at most of the window: up to where the ground near it is darker
 constexpr double kTouchReach = 1.4, kTouchMost = 0.06;
 constexpr double kSoft =
-    0.02;                      // of the window's width in the world: what a soft edge may reach beyond a body
+    0.0065;                    // of the window's width in the world: what a soft edge may reach beyond a body
 constexpr double kSteep = 12;  // slopes are cut off there
 constexpr double kLightNear = 1e-3;
-constexpr double kReach = 4;            // texels of the map that a soft edge reaches at most
+constexpr double kReach = 3;            // texels of the map that an edge reaches in addition
 constexpr std::size_t kManyEdges = 30;  // of a body: more are not looked along
 
 /// How the light sees: the first two across, the third away from it.
@@ -211,14 +211,15 @@ std::vector<int> nearest_first(const SpaceFrame& s) {
   return order;
 }
 
-// a soft edge reaches some texels of the map, whose side is all that is seen at most
+// how far a soft edge reaches: some texels of the map more, whose side is all that is seen at most
 double reach_of_edges(const LightView& view) {
   Extents all;
   for (const Extents& thing : view.things) all.add(thing.low), all.add(thing.high);
   return view.things.empty()
              ? 0
-             : kReach / kMap *
-                   (1.02 * std::max(all.high.x() - all.low.x(), all.high.y() - all.low.y()) + 2 * view.soft);
+             : view.soft + kReach / kMap *
+                               (1.02 * std::max(all.high.x() - all.low.x(), all.high.y() - all.low.y()) +
+                                2 * view.soft);
 }
 
 // the things that cast shadows on others, and what the map must hold, in the light's view
@@ -297,13 +298,14 @@ ShadowMap fit_map(const LightView& view, const Cast& cast, bool any) {
 std::array<float, 4> grain(const SpaceFrame& s, const Corner& corner) {
   const Piece& piece = s.stage.pieces[std::size_t(corner.piece)];
   const Material material = s.stage.looks(piece.body).material;
-  if (material != Material::wood && material != Material::checks) return {};
+  if (material != Material::wood && material != Material::checks && !piece.marked) return {};
   const sim::Snapshot::Body& body = s.now.bodies[std::size_t(piece.body)];
   const Vec3 below = corner.place - 0.02 * piece.least * corner.normal;
   Vec3 at = piece.grain * (body.orientation.conjugate() * (below - body.position));
   // no two boards are cut from one place of the tree
   if (material == Material::wood) at += std::fmod(0.618034 * piece.body, 1.0) * Vec3(11, 1.5, 2.5);
-  return {float(at.x()), float(at.y()), float(at.z()), material == Material::wood ? 1.0f : 2.0f};
+  const float which = piece.marked ? 3 : material == Material::wood ? 1 : 2;
+  return {float(at.x()), float(at.y()), float(at.z()), which};
 }
 
 // all corners as the eye and the light see them
@@ -320,7 +322,7 @@ void add_vertices(SpaceFrame& s, const ShadowMap& lit) {
   }
   if (s.lens.perspective()) near = std::max(near, kLightNear);
   const double span = std::max(farthest - near, 1e-12 + 1e-9 * std::abs(near));
-  s.solids.grained = s.stage.grained;
+  s.solids.grained = s.stage.grained, s.solids.marked = s.stage.marked;
   s.solids.vertices.reserve(s.corners.size());
   for (std::size_t i = 0; i < s.corners.size(); ++i) {
     const Corner& c = s.corners[i];
@@ -353,6 +355,7 @@ void cast_on_each_other(SpaceFrame& s) {
       for (const Vec3& p : {a, b, c}) s.solids.casters.push_back(lit(p));
     });
   }
+  if (lit.any) s.solids.soft = {float(kSpread * lit.depth / lit.side), float(view.soft / lit.side)};
   add_vertices(s, lit);
 }
 
@@ -379,7 +382,8 @@ void cast_on_ground(SpaceFrame& s) {
     fall.touch(places, radius, near, many, s.solids);
   }
   for (const Rod& rod : s.rods)
-    fall.cast(std::array{rod.a, rod.b}, rod.radius, many || s.rods.size() > 64, stopped(rod.share), s.solids);
+    fall.cast_fine(std::array{rod.a, rod.b}, rod.radius, many || s.rods.size() > 64, stopped(rod.share),
+                   s.solids);
 }
 
 }  // namespace
@@ -390,7 +394,7 @@ void add_shadows(SpaceFrame& s) {
                      s.stage.ground->normal.dot(
                          s.lens.perspective() ? Vec3(s.lens.eye() - s.stage.ground->point) : s.lens.back) > 0;
   if (!above) return;
-  s.solids.shade = s.stage.look.theme == Theme::paper ? Color{0x14, 0x1A, 0x24, 62} : Color{0, 0, 0, 115};
+  s.solids.shade = s.stage.look.theme == Theme::paper ? Color{0x14, 0x1A, 0x24, 62} : Color{0, 0, 0, 148};
   s.solids.touch = s.stage.look.theme == Theme::paper ? Color{0x14, 0x1A, 0x24, 90} : Color{0, 0, 0, 150};
   cast_on_ground(s);
 }

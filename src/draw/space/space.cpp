@@ -41,6 +41,7 @@ Piece flat(int body, Polyhedron form) {
   piece.least = piece.reach;
   for (const Polyhedron::Face& face : form.faces)
     piece.least = std::min(piece.least, face.normal.dot(form.vertices[face.loop[0]] - middle));
+  piece.normals = round_normals(form);
   piece.flat = std::move(form);
   return piece;
 }
@@ -71,8 +72,9 @@ void add_pieces(int body, const Form& form, const Eigen::Matrix3d& turn, const V
   }
 }
 
-/// The frame of a material's pattern, in units of half the thickness of a piece; its first axis is the
-/// piece's longest. Of a box checks are as many along each side as fit.
+/// The frame of a material's pattern, in units of half the thickness of a piece, of wood the geometric mean
+/// of its two lesser ones: a board's rings are no finer than a beam's; its first axis is the piece's longest.
+/// Of a box checks are as many along each side as fit.
 Eigen::Matrix3d grain_of(const Piece& piece, Material material) {
   Vec3 half = Vec3::Constant(piece.radius);
   if (piece.form == Piece::Form::capsule) half += (piece.b - piece.a).cwiseAbs() / 2;
@@ -84,10 +86,12 @@ Eigen::Matrix3d grain_of(const Piece& piece, Material material) {
   const double least = std::max(half.minCoeff(), 1e-12);
   int longest = 0;
   half.maxCoeff(&longest);
+  const double second = std::max(half.sum() - half.maxCoeff() - half.minCoeff(), least);
+  const double ring = std::sqrt(least * second);
   Eigen::Matrix3d grain = Eigen::Matrix3d::Zero();
   for (int i = 0; i < 3; ++i) {
     const int axis = (longest + i) % 3;
-    const double cell = material == Material::checks ? half[axis] / std::round(half[axis] / least) : least;
+    const double cell = material == Material::checks ? half[axis] / std::round(half[axis] / least) : ring;
     grain(i, axis) = 1 / cell;
   }
   return grain;
@@ -208,6 +212,10 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
     const Material material = looks(piece.body).material;
     piece.grain = grain_of(piece, material);
     grained = grained || material == Material::wood || material == Material::checks;
+    const sim::SceneInfo::Body& body = cast.bodies[std::size_t(piece.body)];
+    piece.marked = look.axes && material == Material::matte && body.turns && !body.fixed &&
+                   (body.kind == sim::ShapeKind::ball || body.kind == sim::ShapeKind::capsule);
+    marked = marked || piece.marked;
   }
 
   // the page: caption, then a window for each camera
@@ -305,12 +313,14 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
     add_bodies(scenery);
     add_links(scenery);
     add_brackets(scenery);
+    add_water(scenery);
     scenery.sight.finish();
     add_shadows(scenery);
     trace_trails(scenery, ways);
     trace_drops(scenery);
     trace_paths(scenery, paths, false);
     for (const SpaceGhost& ghost : ghosts) trace_ghost(scenery, ghost);
+    trace_water(scenery);
     trace_edges(scenery);
     draw_room_front(stage, lens, picture.moving);
     draw_space_arrows(scenery);

@@ -20,12 +20,14 @@ struct Piece {
   enum class Form { polyhedron, ball, capsule };
   Form form = Form::ball;
   int body = 0;
-  Polyhedron flat;                                      // of a polyhedron
+  Polyhedron flat;                                      // of a polyhedron,
+  std::vector<std::vector<sim::Vec3>> normals;          // and round_normals of it
   sim::Vec3 a = sim::Vec3::Zero(), b = a;               // a ball's centre; the ends of a capsule's axis
   double radius = 0;                                    // m; 0: a point, drawn as a dot
   double reach = 0;                                     // from the body's centre, m
   double least = 0;                                     // half its thickness, m
   Eigen::Matrix3d grain = Eigen::Matrix3d::Identity();  // body frame to that of its material's pattern
+  bool marked = false;                                  // a round body with lines that show how it turns
 };
 
 /// A window on the page and the camera that looks out of it.
@@ -47,7 +49,8 @@ struct SpaceStage {
   std::vector<Panel> panels;
   Light light;
   std::vector<Piece> pieces;  // by body
-  bool grained = false;       // whether one of them is of wood or checks
+  bool grained = false;       // whether one of them is of wood or checks,
+  bool marked = false;        // and whether one is marked
   std::vector<Color> own;     // one a body
   std::vector<double> dots;   // as Stage's
   Polyhedron room;            // what the walls leave of space
@@ -143,6 +146,9 @@ void add_bodies(SpaceFrame& scenery);
 void add_links(SpaceFrame& scenery);
 /// Pieces of ceiling over the places of the room from which something hangs.
 void add_brackets(SpaceFrame& scenery);
+/// The surface of a fluid, and the line around it.
+void add_water(SpaceFrame& scenery);
+void trace_water(SpaceFrame& scenery);
 /// The edges of bodies that are seen, and of those pieces.
 void trace_edges(SpaceFrame& scenery);
 void trace_ghost(SpaceFrame& scenery, const SpaceGhost& ghost);

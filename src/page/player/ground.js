@@ -7,7 +7,7 @@ import { clamp, cross, dot, plus, sub, unit } from "./lens.js";
 const POOL = 0.62,
   POOL_ROW = 4,
   POOL_COLUMNS = 48,
-  POOL_INK = [0x5a, 0x6b, 0x7c, 0x70];
+  POOL_INK = [0x6a, 0x7c, 0x8e, 0x80];
 const TILE = 105,
   FROM = 0.35,
   TO = 1.25,

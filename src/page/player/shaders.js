@@ -168,9 +168,9 @@ float darkness(int own, vec3 p, vec3 n) {
 // the patterns of materials (shaders/material.glsl), and metal (draw/space/light.cpp)
 const MATERIALS = `
 float wood(vec3 p) {
-  float r = 3.1 * length(p.yz + vec2(0.4, 3.7)) + 0.16 * sin(0.31 * p.x + 0.7 * p.y) + 0.05 * sin(1.1 * p.x + 2.3);
-  float t = fract(r), late = smoothstep(0.25, 0.85, t) * (1.0 - smoothstep(0.9, 1.0, t));
-  return 1.0 - 0.17 * mix(0.4, late, clamp(2.2 - 4.0 * fwidth(r), 0.0, 1.0));
+  float r = 2.1 * length(p.yz + vec2(0.4, 3.7)) + 0.16 * sin(0.31 * p.x + 0.7 * p.y) + 0.05 * sin(1.1 * p.x + 2.3);
+  float t = fract(r), late = smoothstep(0.15, 0.85, t) * (1.0 - smoothstep(0.86, 1.0, t));
+  return 1.0 - 0.085 * mix(0.42, late, clamp(2.2 - 8.4 * length(fwidth(p.yz)), 0.0, 1.0));
 }
 float checks(vec3 p) {
   vec3 w = max(fwidth(p), 1e-4);

@@ -16,7 +16,7 @@ const ITEMS = 300; // items: more are put in order by their middles alone
 const TOUCH = 1e-3; // of a body's size: so far two that touch may be within each other
 const SHADES = 12; // of a trail
 const SHADOWS = 60; // bodies' pieces: of more, none shades another
-const MEANS = [1, 1, 0.93, 0.78]; // of the patterns of wood and checks: shaders.js
+const MEANS = [1, 1, 0.96, 0.78]; // of the patterns of wood and checks: shaders.js
 
 /**
  * What is drawn in one go: a convex body's piece, or a line.
@@ -286,7 +286,7 @@ export class Sketch {
       hull(rims).forEach(([x, y], i) => (i === 0 ? c.moveTo(x, y) : c.lineTo(x, y)));
       c.closePath();
     }
-    c.fillStyle = this.dark ? `rgba(0,0,0,${115 / 255})` : `rgba(20,26,36,${62 / 255})`;
+    c.fillStyle = this.dark ? `rgba(0,0,0,${148 / 255})` : `rgba(20,26,36,${62 / 255})`;
     c.fill();
   }
 

@@ -82,8 +82,9 @@ struct SceneInfo {
   std::vector<Mouse> mice;
   std::vector<Joint> joints;
   std::vector<Rail> rails;
-  bool forces = false;      // beside gravity, drag, springs and explosions
-  bool books_work = false;  // Energies::work is kept
+  std::optional<double> surface{};  // the y of a fluid's, m
+  bool forces = false;              // beside gravity, drag, springs and explosions
+  bool books_work = false;          // Energies::work is kept
 };
 
 struct Energies {
@@ -172,6 +173,8 @@ struct Track {
     double time = 0;
     Vec3 place = Vec3::Zero();
     Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+    Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  // of the centre of mass, m/s; rad/s
+    bool smooth = false;  // no impact since the point before: both have the velocities of one motion
   };
   std::vector<int> bodies;
   std::vector<std::vector<Point>> points;  // one list a body of `bodies`, times increasing

@@ -94,7 +94,8 @@ class PlaybackOf final : public RunWithoutSteps {
     for (; next_ < trajectory_->times.size() && trajectory_->times[next_] <= now; ++next_) {
       for (std::size_t i = 0; i < track_.bodies.size(); ++i) {
         const Sighting& pose = trajectory_->poses[next_][std::size_t(track_.bodies[i])];
-        track_.points[i].push_back({trajectory_->times[next_], pose.position, pose.orientation});
+        track_.points[i].push_back(
+            {trajectory_->times[next_], pose.position, pose.orientation, pose.velocity, pose.spin});
       }
     }
   }

@@ -235,7 +235,14 @@ class RunOf final : public Run {
       const int body = track_.bodies[i];
       if (!all && !touched_[body]) continue;
       Track::Point point{t, to_3d<D>(state_.x[body])};
-      if (const int k = turning(state_, body); k >= 0) point.orientation = quaternion<D>(state_.turn[k]);
+      point.velocity = to_3d<D>(state_.v[body]), point.smooth = !touched_[body];
+      if (const int k = turning(state_, body); k >= 0) {
+        point.orientation = quaternion<D>(state_.turn[k]);
+        if constexpr (D == 2)
+          point.spin.z() = state_.spin[k][0];
+        else
+          point.spin = state_.spin[k];
+      }
       track_.points[i].push_back(point);
     }
     struck(false);

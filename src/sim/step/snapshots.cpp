@@ -191,12 +191,12 @@ void hold(const Model<D>& model, const State<D>& state, Snapshot& now) {
       end(joint.a), end(joint.b);
       for (const End<D>& it : joint.over) end(it);
       held.at = held.place;
-      if (joint.geared) {
-        // teeth push wheels and racks, where they meet; what turns on a body is only reckoned from it
-        if (body != (*joint.geared)[0].a.body && body != (*joint.geared)[1].a.body) return;
+      // teeth push wheels and racks, where they meet; what turns on a body is only reckoned from it
+      if (joint.geared && body != (*joint.geared)[0].a.body && body != (*joint.geared)[1].a.body) return;
+      // and a rope pulls at a wheel where it leaves it
+      if (joint.geared || joint.kind == JointKind::pulley)
         if (const double square = held.force.squaredNorm(); square > 0)
           held.at += held.force.cross(held.torque) / square;
-      }
       for (Snapshot::Joint::Hold& known : now.joints[i].holds) {
         if (known.body != body || known.place != held.place) continue;
         known.force += held.force, known.torque += held.torque;
@@ -237,6 +237,8 @@ SceneInfo cast(const Model<D>& model, const State<D>& start, const std::vector<P
   cast.dimension = D;
   cast.scale = model.scale;
   cast.gravity = to_3d<D>(model.gravity);
+  for (const Force<D>& force : model.forces)
+    if (force.law == Force<D>::Law::buoyancy) cast.surface = force.level;
   cast.forces = !model.forces.empty() || model.changed;
   cast.books_work = model.books_work();
   for (const Body<D>& body : model.bodies) cast.bodies.push_back(shown(body));
