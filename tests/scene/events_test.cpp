@@ -128,6 +128,50 @@ TEST(Events, ATimeIsThatOfTheMotionItself) {
   }
 }
 
+// What is let go level on a rod, or a bar on a pin, has come to rest on the other side after half a period,
+//   T / 2 = 2 K(1/2) / w,  K(1/2) = 1.8540746773013719   w^2 = g / L, of a bar m g d / I
+// and turns back: its angle from there is d = w^2 s^2 / 2, its level speed L d d', which is u after
+//   s = (2 u / (L w^4))^(1/3)
+// The course of a step has velocities to the third order alone, and has it turn before, and at the start.
+TEST(Events, AVelocityOfWhatSwingsIsReadOnTheMotionItself) {
+  const double level = 2.0, thick = 0.05;
+  const double bar = std::sqrt(kFalling * 0.5 / ((1 + thick * thick) / 12 + 0.25));
+  for (const auto& [name, space, w, arm, sign] :
+       {std::tuple("bob", false, std::sqrt(kFalling / level), level, -1),
+        std::tuple("bob", true, std::sqrt(kFalling / level), level, -1),
+        std::tuple("bar", false, bar, 0.5, 1)}) {
+    const std::string body =
+        sign < 0 ? "[[ball]]\nname = \"bob\"\nradius = 0.1\nmass = 1\nposition = " + spot(space, 1, 3) +
+                       "\n[[joint]]\ntype = \"rod\"\nbetween = [" + spot(space, 3, 3) + ", \"bob\"]\n"
+                 : "[[box]]\nname = \"bar\"\nsize = [1, 0.05]\nposition = [2.5, 3]\n[[joint]]\n"
+                   "type = \"pin\"\nbetween = [\"bar\", \"room\"]\nat = [2, 3]\n";
+    for (const int rate : {60, 600}) {
+      for (const double u : {1e-6, 1e-5}) {
+        const double t = 2 * 1.8540746773013719 / w + std::cbrt(2 * u / (arm * std::pow(w, 4)));
+        const std::string condition =
+            when(fmt::format("value = \"{}.vx {} {}\"", name, sign < 0 ? '<' : '>', sign * u));
+        const auto text = [&](const char* mode) {
+          return fmt::format(
+              "duration = 1000\n[room]\nsize = {}\nwalls = \"none\"\n[physics]\ncollision = \"{}\"\n"
+              "rate = {}\n{}{}",
+              space ? "[8, 8, 8]" : "[8, 8]", mode, rate, body, condition);
+        };
+        const std::string where = fmt::format("{} {} {} {}", name, space, rate, u);
+        const auto events = events_until(text("event"), 1.8);
+        ASSERT_EQ(events.size(), 1u) << where;
+        // the scheme's error of the swing
+        EXPECT_NEAR(sim::value(events[0].time), t, rate == 60 ? 2e-6 : 1e-9) << where;
+        const auto run = run_of(text("event"));
+        const auto now = std::get<sim::Snapshot>(run->at(events[0].time));
+        EXPECT_NEAR(now.bodies[0].velocity.x(), sign * u, 1e-12) << where;
+        const std::vector<double> steps = times_until(text("contact"), 1.8);
+        ASSERT_EQ(steps.size(), 1u) << where;
+        EXPECT_NEAR(steps[0], std::ceil(sim::value(events[0].time) * rate) / rate, 1e-12) << where;
+      }
+    }
+  }
+}
+
 // At 1,000 m/s a step is 1.7 m long: a line and a band of 2 cm are not missed.
 TEST(Events, NothingIsMissedAtAThousandMetresASecond) {
   for (const bool space : {false, true}) {

@@ -369,6 +369,78 @@ TEST(JointMotor, FollowsAnAngleOrASpeedOfTime) {
   }
 }
 
+// A lift with a load of m altogether follows s = t from rest. Until it is at its aim its motor gives all that
+// it has, F; from there its lag dies away:
+//   a t0 = 1 + k e,  e = t0 - a t0^2 / 2,  a = F / m - g        then y = t - e exp(-k (t - t0))
+// at whatever rate, and however strong the motor: it is there within a step.
+TEST(JointMotor, IsAtItsAimWithinAStepAndHoldsIt) {
+  const double m = 180, k = 30;
+  for (const Manner& manner : kManners) {
+    if (manner.name == "iterative") continue;
+    for (const bool space : {false, true}) {
+      for (const double most : {3e4, 1e6}) {
+        const double a = most / m - kEarth;
+        const double t0 = (k - a + std::sqrt((a - k) * (a - k) + 2 * k * a)) / (k * a);
+        const double lag = t0 - 0.5 * a * t0 * t0;
+        for (const int rate : {30, 60, 600}) {
+          const std::string z = space ? ", 0" : "";
+          TextRun scene((space ? space_without_walls(manner) : plane_without_walls(manner)) +
+                            fmt::format("[[box]]\nname = 'cab'\nsize = [1, 1{0}]\nmass = 100\n"
+                                        "position = [0, 0{1}]\n[[ball]]\nname = 'man'\nradius = 0.2\n"
+                                        "mass = 80\nposition = [0, 0.7{1}]\nelasticity = 0\n"
+                                        "[[joint]]\ntype = 'slider'\nbetween = ['cab', 'room']\n"
+                                        "axis = [0, 1{1}]\nmotor = {{ position = '1*t', most = {2} }}\n",
+                                        space ? ", 1" : "", z, most),
+                        {fmt::format("physics.rate={}", rate)});
+          const std::size_t cab = number_of(scene, "cab"), man = number_of(scene, "man");
+          for (const double t : {0.1, 0.5, 1.0}) {
+            const sim::Snapshot now = scene.at(t);
+            const double e = lag * std::exp(-k * (t - t0));
+            const std::string where =
+                fmt::format("{} {} {} /s, {} N, {} s", manner.name, space ? "space" : "plane", rate, most, t);
+            // the scheme's error of the lag
+            EXPECT_NEAR(now.bodies[cab].position.y(), t - e, 1e-7) << where;
+            EXPECT_NEAR(now.bodies[man].position.y(), t - e + 0.7, 1e-7) << where;
+            EXPECT_NEAR(now.joints[0].force.y(), m * (kEarth - k * k * e), 0.02) << where;
+          }
+        }
+      }
+    }
+  }
+}
+
+// Watt's linkage is driven: a torque that hardly depends on the rate, far below what the motor has, by an
+// angle of the time and by a speed that it has to come to from rest.
+TEST(JointMotor, DrivesALinkageAtAnyRate) {
+  for (const Manner& manner : kManners) {
+    if (manner.name == "iterative") continue;
+    for (const char* motor : {"angle = '20*sin(180*t*deg)', most = 500", "speed = 20, most = 5000"}) {
+      const auto torque = [&](int rate, double t) {
+        TextRun scene(
+            plane_without_walls(manner) +
+                fmt::format("[[box]]\nname = 'left'\nsize = [1.5, 0.06]\nmass = 1\nposition = [1.75, 2.3]\n"
+                            "[[box]]\nname = 'right'\nsize = [1.5, 0.06]\nmass = 1\nposition = [3.25, 1.7]\n"
+                            "[[box]]\nname = 'coupler'\nsize = [0.06, 0.6]\nmass = 0.5\nposition = [2.5, 2]\n"
+                            "[[joint]]\ntype = 'pin'\nbetween = ['left', 'room']\nat = [1, 2.3]\n"
+                            "motor = {{ {} }}\n"
+                            "[[joint]]\ntype = 'pin'\nbetween = ['right', 'room']\nat = [4, 1.7]\n"
+                            "[[joint]]\ntype = 'pin'\nbetween = ['left', 'coupler']\nat = [2.5, 2.3]\n"
+                            "[[joint]]\ntype = 'pin'\nbetween = ['right', 'coupler']\nat = [2.5, 1.7]\n",
+                            motor),
+            {fmt::format("physics.rate={}", rate)});
+        return scene.at(t).joints[0].torque.z();
+      };
+      for (const double t : {0.1, 0.5}) {
+        const double fine = torque(1200, t);
+        EXPECT_GT(std::abs(fine), 10) << motor;
+        EXPECT_LT(std::abs(fine), 30) << motor;
+        for (const int rate : {30, 60, 600})
+          EXPECT_NEAR(torque(rate, t), fine, 1e-4) << manner.name << motor << rate << " " << t;
+      }
+    }
+  }
+}
+
 // A motor that is too weak falls behind, and its force is what it has.
 TEST(JointMotor, ThatIsTooWeakGivesAllItHas) {
   for (const Manner& manner : kManners) {

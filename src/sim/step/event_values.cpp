@@ -1,6 +1,7 @@
 // Values of quantities, along the course of a step:
 //   g(t) = b(t) - a(t)             margins of the comparisons a < b, by samples; where samples turn back
 //                                  before zero, the extremum between them
+// The course has velocities to the third order alone: what it has found must be so on the motion itself.
 // Under `event` the time is then sought on the motion itself: by steps of a part of the step, from its
 // beginning, between one before and one after, until both are 1e-12 of a step apart.
 
@@ -20,6 +21,8 @@ constexpr double kFirstBracket = 1e-8;  // of a step
 constexpr double kLastBracket = 1e-2;
 constexpr double kMoment = 1e-9;  // of a step
 constexpr int kMostTries = 60;    // partial steps of a search
+constexpr int kLooksAt = 4;       // of a span of the course, at the ends of which the motion is looked at
+constexpr int kPeakTries = 30;    // where it is true for a moment alone
 constexpr int kSamples = 16;      // of a smooth piece
 constexpr double kBeside = 1e-3;  // of the way between two samples
 constexpr double kGolden = 0.3819660112501051;
@@ -138,6 +141,8 @@ void Events<D>::find_values(const State<D>& state, int w, double from, double to
   }
   stretches(read_[std::size_t(w)], from, to);
   const std::vector<double> knots = knots_;
+  const std::size_t begun = found_.size();
+  double since = from;
   std::vector<double> at(kSamples + 1), more;
   for (std::size_t s = 0; s + 1 < knots.size(); ++s) {
     const double a = knots[s], b = knots[s + 1], inside = 0.5 * (a + b);
@@ -210,7 +215,11 @@ void Events<D>::find_values(const State<D>& state, int w, double from, double to
           evaluate(state, w, from, to, std::span(&middle, 1), inside);
           (truth_[0] != 0 ? high : low) = middle;
         }
-        found_.push_back({exact_ ? high : to, w, 0, false, 0});
+        found_.push_back({exact_ ? high : to, w, 0, false, 0, since, high, to});
+      }
+      if (!now && was) {
+        since = at[i];
+        if (found_.size() > begun) found_.back().until = i == 0 ? at[0] : at[i - 1];
       }
       was = now;
     }
@@ -251,44 +260,110 @@ void Events<D>::probe(const State<D>& state, double fraction) {
   stepper_->watch(&course_);
 }
 
-// the time of what was found on the course, on the motion itself
+// what was found, on the motion itself: whether it is so at a fraction of the step, and by how much
+template <int D>
+typename Events<D>::Tried Events<D>::attempt(const Found& found, double from, double at) {
+  const When<D>& when = model_.whens[std::size_t(found.when)];
+  stepper_->watch(nullptr);
+  tried_ = begun_;
+  const bool troubled = at > from && stepper_->go(tried_, from, at).has_value();
+  stepper_->watch(&course_);
+  if (troubled) return {true, 0};
+  if (when.on == On::crosses) {
+    const double s = side_of(when, tried_.x[std::size_t(when.those[std::size_t(found.which)])]);
+    const double over = found.side == 2 ? s : -s;
+    return {over > 0, over};
+  }
+  const bool is = true_now(tried_, found.when, at);
+  return {is, margins_.size() == 1 ? margins_[0][0] : 0};
+}
+
+// an instant at which a value is true, where the course has it, or near
+template <int D>
+std::optional<double> Events<D>::true_instant(const Found& found, double from, double to) {
+  for (double d = kFirstBracket; d <= kLastBracket; d *= 100) {
+    const double at = std::min(to, found.seen + d);
+    if (attempt(found, from, at).is) return at;
+  }
+  for (int k = 1; k <= kLooksAt && found.until > found.seen; ++k) {
+    const double at = found.seen + (found.until - found.seen) * k / kLooksAt;
+    if (attempt(found, from, at).is) return at;
+  }
+  // for a moment alone, which the course has a little too early or late: up to where its margin is greatest
+  if (found.until - found.seen > kLastBracket || margins_.size() != 1) return {};
+  double low = std::max(from, found.seen - kLastBracket), high = std::min(to, found.until + kLastBracket);
+  double x = low + kGolden * (high - low), y = high - kGolden * (high - low);
+  Tried at_x = attempt(found, from, x), at_y = attempt(found, from, y);
+  for (int k = 0; k < kPeakTries && !at_x.is && !at_y.is; ++k) {
+    if (at_x.margin > at_y.margin)
+      high = y, y = x, at_y = at_x, x = low + kGolden * (high - low), at_x = attempt(found, from, x);
+    else
+      low = x, x = y, at_x = at_y, y = high - kGolden * (high - low), at_y = attempt(found, from, y);
+  }
+  return at_x.is ? std::optional(x) : at_y.is ? std::optional(y) : std::nullopt;
+}
+
+// an instant before `at` at which it is false
+template <int D>
+std::optional<double> Events<D>::false_before(const Found& found, double from, double at) {
+  if (found.since >= at) {
+    const double before = std::max(from, at - kLastBracket);
+    return attempt(found, from, before).is ? std::nullopt : std::optional(before);
+  }
+  for (double d = kFirstBracket; d <= kLastBracket && at - d > found.since; d *= 100)
+    if (!attempt(found, from, at - d).is) return at - d;
+  // it is false where its course begins, or was true there and has to have ceased
+  for (int k = 1; k < kLooksAt; ++k) {
+    const double before = at + (found.since - at) * k / kLooksAt;
+    if (!attempt(found, from, before).is) return before;
+  }
+  if (found.since == from || !attempt(found, from, found.since).is) return found.since;
+  return {};
+}
+
+// whether a value that the course has is so on the motion itself
+template <int D>
+bool Events<D>::confirm(const State<D>& state, Found& found, double from, double to) {
+  const When<D>& when = model_.whens[std::size_t(found.when)];
+  if (found.exact || when.on != On::value || when.of_forces() || !model_.bonds.empty()) return true;
+  if (!exact_) {
+    const bool ends_true = found.until == to && true_now(state, found.when, to);
+    const bool began_false = found.since == from;
+    const bool is = ends_true || true_instant(found, from, to).has_value();
+    return is && (began_false || false_before(found, from, found.seen).has_value());
+  }
+  const std::optional<double> at = true_instant(found, from, to);
+  const std::optional<double> before = at ? false_before(found, from, *at) : std::nullopt;
+  if (!before) return false;
+  found.at = *at, found.since = *before;
+  return true;
+}
+
+// the time of what was found, on the motion itself
 template <int D>
 void Events<D>::search(Found& found, double from, double to) {
   if (found.exact) return;
   const When<D>& when = model_.whens[std::size_t(found.when)];
-  const bool gate = when.on == On::crosses;
-  struct Tried {
-    bool is = false;
-    double margin = 0;
-  };
-  stepper_->watch(nullptr);
-  const auto attempt = [&](double at) {
-    tried_ = begun_;
-    if (at > from && stepper_->go(tried_, from, at)) return Tried{true, 0};
-    if (gate) {
-      const double s = side_of(when, tried_.x[std::size_t(when.those[std::size_t(found.which)])]);
-      const double over = found.side == 2 ? s : -s;
-      return Tried{over > 0, over};
-    }
-    const bool is = true_now(tried_, found.when, at);
-    return Tried{is, margins_.size() == 1 ? margins_[0][0] : 0};
-  };
   const bool forces = when.of_forces();
   double low = 0, high = 0;
   Tried at_low, at_high;
   bool before = false, after = false;
   int tries = 0;
+  if (when.on == On::value && !forces) {
+    low = found.since, high = found.at, before = after = true;
+    at_low = attempt(found, from, low), at_high = attempt(found, from, high);
+  }
   for (double d = kFirstBracket; d <= kLastBracket && !after; d *= 100, ++tries)
-    high = std::min(to, found.at + d), at_high = attempt(high), after = at_high.is;
+    high = std::min(to, found.at + d), at_high = attempt(found, from, high), after = at_high.is;
   for (double d = kFirstBracket; d <= kLastBracket && after && !before; d *= 100, ++tries) {
     low = found.at - d;
     if (low <= from)
-      low = from, before = true, at_low = attempt(from);
+      low = from, before = true, at_low = attempt(found, from, from);
     else
-      at_low = attempt(low), before = !at_low.is;
+      at_low = attempt(found, from, low), before = !at_low.is;
   }
   // forces may have changed anywhere in the step
-  if (forces && after && !before) low = from, before = true, at_low = attempt(from);
+  if (forces && after && !before) low = from, before = true, at_low = attempt(found, from, from);
   // its margin is a straight line there, nearly: then a little before and a little after it
   for (; before && after && high - low > kFound && tries < kMostTries; ++tries) {
     double middle = 0.5 * (low + high);
@@ -296,16 +371,15 @@ void Events<D>::search(Found& found, double from, double to) {
     const bool line = at_low.margin < 0 && at_high.margin > 0 && tries % 4 != 3;
     if (line) middle = low + part * (high - low) + 0.25 * kFound;
     if (!(middle > low && middle < high)) middle = 0.5 * (low + high);
-    const Tried now = attempt(middle);
+    const Tried now = attempt(found, from, middle);
     (now.is ? high : low) = middle;
     (now.is ? at_high : at_low) = now;
     if (!line || !now.is || middle - 0.5 * kFound <= low) continue;
-    const Tried just = attempt(middle - 0.5 * kFound);
+    const Tried just = attempt(found, from, middle - 0.5 * kFound);
     (just.is ? high : low) = middle - 0.5 * kFound;
     (just.is ? at_high : at_low) = just;
   }
   if (before && after) found.at = high;
-  stepper_->watch(&course_);
 }
 
 template double Events<2>::read(const State<2>& state, const Reading& of);
@@ -320,6 +394,10 @@ template bool Events<2>::true_now(const State<2>& as_it_is, int w, double fracti
 template bool Events<3>::true_now(const State<3>& as_it_is, int w, double fraction);
 template void Events<2>::probe(const State<2>& state, double fraction);
 template void Events<3>::probe(const State<3>& state, double fraction);
+template bool Events<2>::confirm(const State<2>& state, typename Events<2>::Found& found, double from,
+                                 double to);
+template bool Events<3>::confirm(const State<3>& state, typename Events<3>::Found& found, double from,
+                                 double to);
 template void Events<2>::search(typename Events<2>::Found& found, double from, double to);
 template void Events<3>::search(typename Events<3>::Found& found, double from, double to);
 

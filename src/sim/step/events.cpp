@@ -229,6 +229,7 @@ std::optional<Trouble> Events<D>::advance(State<D>& state, double to) {
     found_.clear();
     if (exact_ || end == 1 || end < to) find(state, from, end);
     find_times(begun_, from, end);
+    std::erase_if(found_, [&](Found& each) { return !confirm(state, each, from, end); });
     if (exact_)
       for (Found& each : found_) search(each, from, end);
     std::sort(found_.begin(), found_.end(), [](const Found& a, const Found& b) { return a.at < b.at; });

@@ -47,6 +47,12 @@ class Events {
     int when = 0, which = 0;
     bool exact = false;  // the time needs no search
     char side = 0;       // of crosses: on which it is from then on
+    // of values: since when the course has it false, from when and until when true
+    double since = 0, seen = 0, until = 0;
+  };
+  struct Tried {
+    bool is = false;
+    double margin = 0;
   };
   // two that touch within the course at hand, fractions of the step
   struct Span {
@@ -91,6 +97,10 @@ class Events {
   void probe(const State<D>& state, double fraction);
   double side_of(const When<D>& when, const Vec<D>& x) const;
   bool within(const When<D>& when, const Vec<D>& x) const;
+  Tried attempt(const Found& found, double from, double at);
+  bool confirm(const State<D>& state, Found& found, double from, double to);
+  std::optional<double> true_instant(const Found& found, double from, double to);
+  std::optional<double> false_before(const Found& found, double from, double at);
   void search(Found& found, double from, double to);
 
   bool act(State<D>& state, const Found& found, TimeStamp at);

@@ -22,10 +22,12 @@ constexpr double kFine = 0.25;      // of the thinner body: how far two may move
 constexpr int kMostLooks = 200000;  // of a couple in an interval
 constexpr double kSteepest = 2.5;  // of its way: how fast one goes in its interval, at most (Hermite's cubic)
 constexpr int kMostRoots = 100;
-constexpr double kStraight = 0.8;     // of an interval cut at a release: earlier releases in it are ignored
-constexpr double kBeyond = 1e-12;     // of what a joint bears
-constexpr double kShorter = 1.0 / 8;  // of an interval that is too long by far
-constexpr int kMostShorter = 9;       // times one after another, where numbers are not finite
+constexpr double kStraight = 0.8;  // of an interval cut at a release: earlier releases in it are ignored
+constexpr double kBeyond = 1e-12;  // of what a joint bears
+constexpr double kBeyondAim = 2;   // of the time to it: how far one goes at once
+constexpr double kShortestSlip = 1.0 / 64;  // of a step
+constexpr double kShorter = 1.0 / 8;        // of an interval that is too long by far
+constexpr int kMostShorter = 9;             // times one after another, where numbers are not finite
 
 }  // namespace
 
@@ -219,9 +221,45 @@ double ExactSolver<D>::force_couple(Couple couple) {
   return 0;
 }
 
-// the part of the interval at which the first of what slides has stopped, by a straight line; and whose slide
+// How much of `h` may be gone at once: not far beyond where what slips comes to its aim, by the accelerations
+// of the instant. A strong motor is there at once, and would throw what it holds about until the interval
+// ends.
 template <int D>
-double ExactSolver<D>::stopping_time(Couple& which) {
+double ExactSolver<D>::time_to_aims(State<D>& state, double t, double h) {
+  const auto slip = [&](const Constraint& constraint) {
+    if (!is_bounded(constraint)) return 0.0;
+    const ConeBlock<D>& block = blocks_[std::size_t(constraint.block)];
+    return block.lower == block.upper ? row_velocity(constraint.first) - aim(constraint).speed : 0.0;
+  };
+  if (std::none_of(constraints_.begin(), constraints_.end(),
+                   [&](const Constraint& constraint) { return std::abs(slip(constraint)) > still_speed_; }))
+    return h;
+  const auto rate = dynamics_.accelerations(state, t);
+  std::vector<double> ends(rate.begin(), rate.end());
+  for (int i = 0; i < int(rows_.size()); ++i) add_accelerations(i, f_[i], ends);
+  const double shortest = kShortestSlip / value(model_.rate);
+  for (const Constraint& constraint : constraints_) {
+    const double fast = slip(constraint);
+    if (std::abs(fast) <= still_speed_) continue;
+    const int row = constraint.first;
+    const double gains = row_acceleration(row, ends) + rows_[row].velocity_product - aim(constraint).rate;
+    if (fast * gains < 0) h = std::min(h, std::max(kBeyondAim * std::abs(fast / gains), shortest));
+  }
+  return h;
+}
+
+// how far a motor, or the friction of a joint, still is from its aim, at the rows at hand, m/s or rad/s;
+// below 0 where it is past it
+template <int D>
+double ExactSolver<D>::slip_left(const Constraint& constraint) {
+  const double started = interval_.aims[std::size_t(&constraint - constraints_.data())];
+  const double sign = interval_.velocities[constraint.first] > started ? 1 : -1;
+  return sign * (row_velocity(constraint.first) - aim(constraint).speed);
+}
+
+// the part of the interval at which the first of what slides has stopped, by a straight line; and what slides
+template <int D>
+double ExactSolver<D>::stopping_time(const Constraint*& which) {
   double first = kNever;
   for (const Constraint& constraint : constraints_) {
     double begun = 0, now = 0;
@@ -234,22 +272,50 @@ double ExactSolver<D>::stopping_time(Couple& which) {
         now += way[i] * row_velocity(constraint.first + 1 + i);
       }
       if (D > 2 && begun <= 0) continue;
-    } else if (constraint.kind == Constraint::Kind::motor || constraint.kind == Constraint::Kind::friction) {
+    } else if (is_bounded(constraint)) {
       const ConeBlock<D>& block = blocks_[constraint.block];
       if (block.lower != block.upper) continue;
-      const double ended = aim(constraint).speed;
-      const double started = interval_.aims[std::size_t(&constraint - constraints_.data())];
-      const double sign = interval_.velocities[constraint.first] > started ? 1 : -1;
-      begun = sign * (interval_.velocities[constraint.first] - started),
-      now = sign * (row_velocity(constraint.first) - ended);
+      begun = std::abs(interval_.velocities[constraint.first] -
+                       interval_.aims[std::size_t(&constraint - constraints_.data())]);
+      now = slip_left(constraint);
     } else {
       continue;
     }
     if (!(now < -still_speed_ && begun / (begun - now) < first)) continue;
     first = begun / (begun - now);
-    which = {rows_[constraint.first].a, rows_[constraint.first].b};
+    which = &constraint;
   }
   return first;
+}
+
+// The length of the interval after which a motor, or the friction of a joint, has come to its aim: it has not
+// yet after `low`, and is past it after `high`. Its aim moves, and what it holds swings, so its slip is no
+// straight line: regula falsi, Illinois. Leaves the state, and its rows, at the end of that length.
+template <int D>
+double ExactSolver<D>::stopping_length(State<D>& state, double t, const Constraint& which, double low,
+                                       double high) {
+  const auto left_after = [&](double length) {
+    begin_again(state, t);
+    integrate(state, t, length);
+    if (!all_finite(state)) return -1e300;
+    build_rows(state, t + length);
+    return slip_left(which);
+  };
+  double at_high = left_after(high), at_low = left_after(low), length = low;
+  for (int i = 0; i < kMostRoots && high - low > 1e-15 * high; ++i) {
+    length = (low * at_high - high * at_low) / (at_high - at_low);
+    if (!(length > low && length < high)) length = 0.5 * (low + high);
+    const double value = left_after(length);
+    if (std::abs(value) <= 0.5 * still_speed_) break;
+    if (value > 0) {
+      if (i > 0) at_high *= 0.5;
+      low = length, at_low = value;
+    } else {
+      if (i > 0) at_low *= 0.5;
+      high = length, at_high = value;
+    }
+  }
+  return length;
 }
 
 // The fraction of the interval at which the first joint is loaded beyond its strength, by linear
@@ -278,22 +344,31 @@ double ExactSolver<D>::breaking_time(const State<D>& state, Couple& which) const
   return first;
 }
 
-// the part of the interval from interval_.begun to `state` at which the first thing happens, and to what;
-// kNever: nothing does
+// the rows of what is at hand, at time t
 template <int D>
-double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& which, bool& passes) {
-  // what is moved may go there and back
-  interval_.paces.clear();
-  for (int i = 0; i < drives_.size(); ++i) interval_.paces.push_back(drives_.fastest(i, interval_.t, h));
-  // contacts that slide, by their rows at the end
-  update_poses(state), pose_driven(interval_.t + h);
+void ExactSolver<D>::build_rows(const State<D>& state, double t) {
+  update_poses(state), pose_driven(t);
   rows_.clear();
   for (Constraint& constraint : constraints_) {
     build_jacobian(constraint, constraint.kind == Constraint::Kind::contact
                                    ? AngularVec<D>::Zero().eval()
                                    : turn_between(state, model_.joints[constraint.of]));
   }
-  double first = stopping_time(which);
+}
+
+// the part of the interval from interval_.begun to `state` at which the first thing happens, and to what;
+// kNever: nothing does
+template <int D>
+double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& which, bool& passes,
+                                   const Constraint*& stops) {
+  // what is moved may go there and back
+  interval_.paces.clear();
+  for (int i = 0; i < drives_.size(); ++i) interval_.paces.push_back(drives_.fastest(i, interval_.t, h));
+  // what slides, by its rows at the end
+  build_rows(state, interval_.t + h);
+  double first = stopping_time(stops);
+  const double stopped = first;
+  if (stops) which = {rows_[stops->first].a, rows_[stops->first].b};
 
   // ropes and limits that are not held, and so have no row, by theirs
   Couple joint{-1, -1};
@@ -309,6 +384,7 @@ double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& whic
   }
   passes = false;
   if (const double part = passing_time(state, h); part < first) first = part, passes = true, which = {-1, -1};
+  if (first < stopped) stops = nullptr;
   return first;
 }
 
@@ -400,12 +476,13 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
   double length = h, longer = h;
   cut = false, progress_.cut_by = {-1, -1};
   interval_.forces = f_;
+  const Constraint* stops = nullptr;  // what the interval is to end with, coming to its aim
   for (int tries = 0; tries < 20; ++tries) {
     integrate(state, t, length);
     if (const bool finite = all_finite(state); !finite || pulls_wildly()) {
       begin_again(state, t);
       cut = true, longer = length, length *= kShorter;
-      progress_.released.reset();
+      progress_.released.reset(), stops = nullptr;
       // a force may grow without bound within any interval
       if (!finite && tries >= kMostShorter) return 0;
       continue;
@@ -416,6 +493,11 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
       begin_again(state, t);
       integrate(state, t, length);
     }
+    if (stops && is_bounded(*stops)) {
+      build_rows(state, t + length);
+      if (slip_left(*stops) > still_speed_) length = stopping_length(state, t, *stops, length, longer);
+    }
+    stops = nullptr;
     const Constraint* which = nullptr;
     double opens = progress_.openings > 0 ? release_time(which) : kNever;
     // a force that comes down as far in a shorter time is one of many that may bear the same load
@@ -424,8 +506,8 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
     Couple held{-1, -1}, meets{-1, -1};
     const double breaks = breaking_time(state, held);
     bool passes = false;
-    double part = std::min(opens, first_event(state, length, meets, passes));
-    if (breaks < part) part = breaks, passes = false, meets = held;
+    double part = std::min(opens, first_event(state, length, meets, passes, stops));
+    if (breaks < part) part = breaks, passes = false, meets = held, stops = nullptr;
     if (part > 1) {
       if (model_.collision != Collision::event) return length;
       const double lawful = lawful_length(state, t, length);
@@ -438,6 +520,7 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
     progress_.passes = passes && part < opens;
     progress_.released.reset();
     if (part == opens) {
+      stops = nullptr;
       progress_.released = candidates_[which->of].key,
       progress_.reserve_at_release = force_reserve(*which, interval_.forces);
       meets = {progress_.released->a, progress_.released->b};

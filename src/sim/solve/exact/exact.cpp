@@ -283,7 +283,8 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
       for (ConeMode<D>& mode : interval_.modes) {
         if (mode.kind == ModeKind::at_friction_limit) mode.kind = ModeKind::stick;
       }
-      const double most = D > 2 ? begin_slip_directions(state, t + done, h - done) : h - done;
+      const double soon = time_to_aims(state, t + done, h - done);
+      const double most = D > 2 ? begin_slip_directions(state, t + done, soon) : soon;
       const std::size_t forced = progress_.forced.size();
       length = advance_to_event(state, t + done, most, cut);
       if (!cut && most < h - done) cut = progress_.passes = true;

@@ -313,10 +313,17 @@ class ExactSolver final : public ContactSolver<D>, private System {
   // events.cpp
   double advance_to_event(State<D>& state, double t, double h, bool& cut);
   void integrate(State<D>& state, double t, double h);
-  double first_event(const State<D>& state, double h, Couple& first, bool& passes);
+  void build_rows(const State<D>& state, double t);
+  double first_event(const State<D>& state, double h, Couple& first, bool& passes, const Constraint*& stops);
   double closing_time(const State<D>& state, double h, Couple couple);
   double tightening_time(const State<D>& state, double h, Couple& first);
-  double stopping_time(Couple& first);
+  static bool is_bounded(const Constraint& constraint) {
+    return constraint.kind == Constraint::Kind::motor || constraint.kind == Constraint::Kind::friction;
+  }
+  double time_to_aims(State<D>& state, double t, double h);
+  double slip_left(const Constraint& constraint);
+  double stopping_time(const Constraint*& which);
+  double stopping_length(State<D>& state, double t, const Constraint& which, double low, double high);
   void begin_again(State<D>& state, double t);
   double breaking_time(const State<D>& state, Couple& which) const;
   double travel(const State<D>& state, int body, double h) const;
