@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "sim/math/elementary.h"
 #include "sim/math/expression.h"
 #include "sim/model/model.h"
 
@@ -34,6 +35,24 @@ class Motors {
   bool follows(int joint) const {
     const auto& motor = model_.joints[std::size_t(joint)].motor;
     return motor && motor->follows;
+  }
+
+  /// The coordinate h s after t of a joint that is at c at t and keeps its motor's aim:
+  ///   s(t + h) + (c - s(t)) e^(-k h),  or c and the integral of the speed, by Simpson's rule
+  double lead(int joint, double t, double h, double c) {
+    if (!follows(joint)) {
+      const auto speed = [&](double time) { return at(joint, time, 0, 0).speed; };
+      return c + h * (speed(t) + 4 * speed(t + 0.5 * h) + speed(t + h)) / 6;
+    }
+    auto& evaluation = *evaluations_[std::size_t(joint)];
+    const auto place = [&](double time) {
+      const double at[] = {time};
+      evaluation.begin(at);
+      evaluation.run(1, {});
+      return evaluation.output(6)[0];
+    };
+    const double off = c - place(t);
+    return place(t + h) + off * elementary::exp(-kFollow * h);
   }
 
   /// The aim of a joint's motor at time t where its coordinate is c and changes by `speed`.

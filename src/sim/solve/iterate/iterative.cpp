@@ -198,8 +198,6 @@ void Iterative<D>::project_joints(StepPart<D> part) {
   }
   joints_.finish(part.h);
   if (!state.work.empty()) state.work[0] += joints_.given();
-  joints_.keep(state, part.h);
-  joints_.break_joints(state);
   velocities_from_joints();
   begin_corrections();
   for (const int i : joints_.bodies()) {
@@ -211,6 +209,10 @@ void Iterative<D>::project_joints(StepPart<D> part) {
       state.turn[std::size_t(k)] = joints_.turn(i), state.spin[std::size_t(k)] = at.w;
     moved_by_joints(state, i);
   }
+  if (part.substep + 1 < substeps_ && !joints_.may_break()) return;
+  joints_.find_end_forces(state, part.t + part.h);
+  joints_.keep(state, part.h);
+  joints_.break_joints(state);
 }
 
 template class Iterative<2>;

@@ -16,6 +16,7 @@ constexpr int kRounds = 8;               // of Newton's
 constexpr int kSearches = 12;            // the same, with a search along each
 constexpr double kStride = 0.1;          // rad, and of the scene's size: farther nothing is put in a step
 constexpr double kLeastFraction = 1e-3;  // of a way, in it
+constexpr double kHardlyMore = 1e-9;     // of what the free motion has given
 
 }  // namespace
 
@@ -32,10 +33,8 @@ double JointSolver<D>::position_error() {
   double worst = 0;
   for (int k = 0; k < int(held_.size()); ++k) {
     const Joint<D>& joint = model_.joints[held_[k]];
-    if (one_sided(joint)) {
-      rhs_[factors_.first(k)] = 0;
-      continue;
-    }
+    rhs_[std::size_t(bounded_row(k))] = 0;
+    if (one_sided(joint)) continue;
     Row<D> out[kMostHeld<D>];
     double off[kMostHeld<D>];
     const int n = rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off, at_);
@@ -62,9 +61,8 @@ bool JointSolver<D>::near() const {
 template <int D>
 void JointSolver<D>::put_motors() {
   for (std::size_t k = 0; k < active_; ++k) {
-    const Bounded& bounded = bounded_[k];
-    if (bounded.load != motor || bounded.ends == kEndless || !(std::fabs(bounded.impulse) < bounded.most))
-      continue;
+    Bounded& bounded = bounded_[k];
+    if (bounded.load != motor || bounded.ends == kEndless || !within(bounded)) continue;
     const Joint<D>& joint = model_.joints[std::size_t(bounded.joint)];
     Row<D> row;
     double value = 0;
@@ -80,30 +78,28 @@ void JointSolver<D>::project_positions(double h) {
   put_motors();
   for (std::size_t k = 0; k < active_; ++k) {
     Bounded& bounded = bounded_[k];
-    double off = 0;
-    if (!left(bounded, off)) continue;
-    // a rope that pulled keeps its length to both sides
-    const bool pulls = pulls_[std::size_t(bounded.joint)].taut && std::fabs(off) <= kTaut * model_.scale;
-    if (!pulls && off >= 0) continue;
+    if (bounded.load > upper) continue;
+    const double off = left(bounded.joint, bounded.load);
+    // what held to the end keeps it to both sides
+    const bool holds = holding(bounded) && std::fabs(off) <= kTaut * size(bounded.joint);
+    if (!holds && off >= 0) continue;
     const double strayed = position_error();
     begun_at_ = at_, begun_turn_ = turn_;
-    if (pulls) {
+    if (holds) {
       shift_bounded(bounded, -off * bounded.effective_mass);
-      if (!near() || position_error() > strayed + std::fabs(off)) at_ = begun_at_, turn_ = begun_turn_;
+      if (!near() || position_error() > strayed + std::fabs(off))
+        at_ = begun_at_, turn_ = begun_turn_, bounded.put = 0;
       continue;
     }
     // what joints hardly let it do would throw them far: then only a part of it
     for (double fraction = 1; fraction > kLeastFraction; fraction /= 2) {
-      const double put = -fraction * off * bounded.effective_mass;
-      shift_bounded(bounded, put);
-      double rest = 0;
-      left(bounded, rest);
-      if (near() && rest > (1 - fraction / 4) * off && position_error() <= strayed - fraction * off) {
-        if (bounded.taut) bounded.put = put;
-        break;
-      }
+      shift_bounded(bounded, -fraction * off * bounded.effective_mass);
+      const double rest = left(bounded.joint, bounded.load);
+      if (near() && rest > (1 - fraction / 4) * off && position_error() <= strayed - fraction * off) break;
       at_ = begun_at_, turn_ = begun_turn_;
     }
+    // where it was far beyond its end it is put back, no more
+    bounded.put = 0;
   }
   begun_at_ = at_, begun_turn_ = turn_;
   std::fill(shifts_.begin(), shifts_.end(), 0.0);
@@ -155,31 +151,42 @@ void JointSolver<D>::finish(double h) {
   if (bodies_.empty()) return;
   for (const int i : bodies_) unprojected_[i] = at_[i].x;
   project_positions(h);
-  // a taut rope turns its bodies' motion as an equality does: s / h of Rattle's
+  // what is put elsewhere has moved there, s / h of Rattle's: angular momentum stays
   for (std::size_t k = 0; k < active_; ++k) {
-    if (bounded_[k].put == 0) continue;
-    bounded_[k].impulse += bounded_[k].put / h;
-    each_push(bounded_[k], bounded_[k].put / h,
+    const Bounded& bounded = bounded_[k];
+    if (bounded.put == 0) continue;
+    each_push(bounded, bounded.put / h,
               [&](int body, const Vec<D>& v, const AngularVec<D>& w) { at_[body].v += v, at_[body].w += w; });
   }
   compute_rows();
-  stop_rows();
+  std::fill(targets_.begin(), targets_.end(), 0.0);
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     push(old_rows_[r], shifts_[r] - 0.5 * impulses_[r]);
     const double half = 0.5 * impulses_[r] + shifts_[r];
     push(rows_[r], half);
     totals_[r] = 2 * half;
   }
-  if (update_bounded()) {
+  // The same of rows with bounds: half of each impulse where the step began, half where it ends. Where they
+  // are put keeps their speed.
+  for (std::size_t k = 0; k < active_; ++k) {
+    Bounded& bounded = bounded_[k];
+    if (bounded.impulse == 0 && bounded.put == 0) continue;
+    push(bounded.row, -0.5 * bounded.impulse);
+    renew(bounded);
+    push(bounded.row, 0.5 * bounded.impulse - bounded.put / h);
+  }
+  if (update_bounded(h)) {
     iterate();
   } else {
     solve_positions();
     for (std::size_t r = 0; r < rows_.size(); ++r) totals_[r] += rhs_[r];
   }
+  for (std::size_t k = 0; k < active_; ++k) bounded_[k].at_end += bounded_[k].impulse;
   book();
   for (std::size_t k = 0; k < active_; ++k) {
     const Bounded& bounded = bounded_[k];
-    if (bounded.impulse == 0) continue;
+    const double given = h * std::fabs(holds_[std::size_t(bounded.joint)].given[bounded.load]);
+    if (std::fabs(bounded.impulse) <= kHardlyMore * given) continue;
     any_pushed_ = true;
     for (const int component : bounded.components) {
       if (component < 0) continue;
@@ -188,7 +195,8 @@ void JointSolver<D>::finish(double h) {
   }
 }
 
-// the work of kinematic bodies and motors: half of each impulse where the step began, half where it ends
+// the work of kinematic bodies and motors: half of each impulse where the step began, half where it ends, but
+// those that the end itself gave
 template <int D>
 void JointSolver<D>::book() {
   work_ = 0;
@@ -198,32 +206,54 @@ void JointSolver<D>::book() {
     const Bounded& b = bounded_[k];
     if (driven_) work_ += 0.5 * b.impulse * (b.begun_drive_work + given(b.row));
     if (b.load != motor) continue;
-    work_ += 0.5 * b.impulse * (begun_motors_[std::size_t(b.joint)].rate + speed(b.row, at_));
+    const double ends = speed(b.row, at_);
+    work_ += 0.5 * (b.impulse - b.at_end) * (begun_motors_[std::size_t(b.joint)].rate + ends) +
+             0.5 * b.at_end * (b.rate_there + ends);
   }
 }
 
-// Motors where bodies now stand, with what they have left to give; what else has bounds has done its
-// component. False where there are none.
+// the row where bodies now stand
 template <int D>
-bool JointSolver<D>::update_bounded() {
+void JointSolver<D>::renew(Bounded& bounded) {
+  const Joint<D>& joint = model_.joints[std::size_t(bounded.joint)];
+  const BodyMotion<D>&a = side(joint.a.body), &b = side(joint.b.body);
+  Row<D> out[kMostHeld<D>];
+  double offs[kMostHeld<D>];
+  if (one_sided(joint)) {
+    rows(joint, a, b, turn_between(joint), out, offs, at_);
+  } else {
+    free_row(joint, a, b, turn_between(joint), out[0], offs[0]);
+    if (bounded.load == upper) out[0].reverse();
+  }
+  bounded.row = out[0];
+}
+
+// Rows with bounds where bodies now stand: motors with what they have left to give, ropes and limits that
+// pushed until they are at rest there; what else has bounds has done its part. False where there are none.
+template <int D>
+bool JointSolver<D>::update_bounded(double h) {
   bool any = false;
   for (std::size_t k = 0; k < active_; ++k) {
     Bounded& b = bounded_[k];
-    if (b.load != motor && b.put == 0) {
+    const bool done = b.load == motor      ? false
+                      : b.load == friction ? !holding(b) && !(b.impulse != 0 && within(b))
+                                           : b.impulse == 0 && !holding(b);
+    b.at_end = -b.impulse;
+    if (done) {
       b.least = b.most = b.impulse;
       continue;
     }
     any = true;
     const Joint<D>& joint = model_.joints[b.joint];
+    renew(b);
     if (b.load == motor) {
+      Row<D> row;
       double way = 0;
-      free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), b.row, way);
+      free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), row, way);
       b.target = motors_.at(b.joint, ends_, way, speed(b.row, at_)).speed;
+      b.rate_there = speed(b.row, at_);
     } else {
-      Row<D> out[kMostHeld<D>];
-      double offs[kMostHeld<D>];
-      rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, offs, at_);
-      b.row = out[0], b.target = 0, b.least = b.impulse;
+      b.target = b.load == friction ? 0 : -std::max(left(b.joint, b.load), 0.0) / h;
     }
     compute_response(b);
     b.effective_mass = effective_mass(b);
@@ -241,7 +271,8 @@ bool JointSolver<D>::update_bounded() {
   template void JointSolver<D>::damped_newton();           \
   template void JointSolver<D>::finish(double);            \
   template void JointSolver<D>::book();                    \
-  template bool JointSolver<D>::update_bounded()
+  template void JointSolver<D>::renew(Bounded&);           \
+  template bool JointSolver<D>::update_bounded(double)
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);
 #undef OBSCURA_INSTANTIATE

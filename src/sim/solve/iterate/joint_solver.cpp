@@ -29,7 +29,6 @@ constexpr int kBoundedRounds =
     16;  // an iteration, of rows with bounds among themselves: they begin from nothing
 constexpr double kLocked = 1e-6;  // of a row's own: what it can move once joints have answered
 constexpr double kApart = 1e-9;   // 1/s, of the scene's size: slower at a joint is rounding
-constexpr double kAims = 1e-6;    // of its speed: what a motor may be off it that holds it
 
 }  // namespace
 
@@ -40,12 +39,13 @@ JointSolver<D>::JointSolver(const Model<D>& model)
   member_.assign(n, 0), component_of_body_.assign(n, -1);
   clear_pushed();
   at_.resize(n), turn_.resize(n), unprojected_.resize(n);
-  pulls_.resize(model.joints.size()), begun_motors_.resize(model.joints.size());
+  holds_.resize(model.joints.size()), begun_motors_.resize(model.joints.size());
   for (Orientation<D>& turn : turn_) turn.setZero();
   for (const Joint<D>& joint : model.joints) {
     joint.each_body([&](int body) {
       if (body >= 0) member_[body] = 1;
     });
+    may_break_ = may_break_ || joint.breaks < kEndless || joint.breaks_torque < kEndless;
   }
   for (int i = 0; i < int(n); ++i) {
     if (!member_[i]) continue;
@@ -83,7 +83,7 @@ std::span<const int> JointSolver<D>::components_of(std::span<const int> bodies) 
 
 template <int D>
 void JointSolver<D>::plan() {
-  held_.clear(), pairs_.clear(), ropes_.clear();
+  held_.clear(), pairs_.clear(), bounded_blocks_.clear(), stops_.clear();
   std::vector<int> sizes;
   std::vector<std::vector<int>> of(model_.bodies.size());  // blocks of each body that moves
   for (int i = 0; i < int(model_.joints.size()); ++i) {
@@ -94,9 +94,20 @@ void JointSolver<D>::plan() {
     joint.each_body([&](int body) {
       if (response_.moves(body)) of[body].push_back(int(held_.size()));
     });
-    if (one_sided(joint)) ropes_.push_back(int(held_.size()));
+    const int block = int(held_.size());
     held_.push_back(i);
     sizes.push_back(rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off, at_));
+    if (one_sided(joint)) {
+      bounded_blocks_.push_back(block), stops_.push_back({block, upper});
+      continue;
+    }
+    const bool least = joint.lower > -1e299, most = joint.upper < 1e299;
+    if (!has_free_row(joint) || !(least || most || joint.motor || joint.friction > 0)) continue;
+    bounded_blocks_.push_back(block), ++sizes.back();
+    if (joint.motor) stops_.push_back({block, motor});
+    if (joint.friction > 0) stops_.push_back({block, friction});
+    if (least) stops_.push_back({block, lower});
+    if (most) stops_.push_back({block, upper});
   }
   const auto meet = [&](const std::vector<int>& all, const std::vector<int>& others) {
     for (const int i : all) {
@@ -118,10 +129,17 @@ void JointSolver<D>::plan() {
   rows_.resize(factors_.rows()), old_rows_.resize(factors_.rows());
   for (auto* numbers : {&impulses_, &totals_, &rhs_, &shifts_}) numbers->resize(factors_.rows());
   targets_.assign(std::size_t(factors_.rows()), 0.0);
-  taut_.assign(held_.size(), 0), least_force_.assign(held_.size(), 0.0);
+  acting_.assign(held_.size(), {});
   loose_.assign(std::size_t(factors_.rows()), 0);
-  for (const int k : ropes_) loose_[std::size_t(factors_.first(k))] = 1;
-  first_loads_.assign(held_.size(), {}), last_loads_ = first_loads_;
+  loosen_all();
+  end_loads_.assign(held_.size(), {});
+  floating_.assign(std::size_t(components()), 1);
+  for (int k = 0; k < int(held_.size()); ++k) {
+    const Joint<D>& joint = model_.joints[std::size_t(held_[std::size_t(k)])];
+    if (!joint.over.empty() || joint.geared || !response_.moves(joint.a.body) ||
+        !response_.moves(joint.b.body))
+      floating_[std::size_t(factors_.component(k))] = 0;
+  }
 }
 
 template <int D>
@@ -159,12 +177,14 @@ void JointSolver<D>::compute_rows() {
   double off[kMostHeld<D>];
   for (int k = 0; k < int(held_.size()); ++k) {
     const Joint<D>& joint = model_.joints[held_[k]];
-    Row<D>* const first = &rows_[factors_.first(k)];
-    if (loose_[std::size_t(factors_.first(k))]) {
-      *first = {};
-      continue;
-    }
-    rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), first, off, at_);
+    if (!one_sided(joint))
+      rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), &rows_[factors_.first(k)], off,
+           at_);
+  }
+  for (const int k : bounded_blocks_) {
+    Row<D>& row = rows_[std::size_t(bounded_row(k))];
+    row = {};
+    if (!loose_[std::size_t(bounded_row(k))]) bounded_row(k, acting_[std::size_t(k)].load, row);
   }
   drive_works_.assign(driven_ ? rows_.size() : 0, 0);
   for (std::size_t r = 0; r < drive_works_.size(); ++r) drive_works_[r] = given(rows_[r]);
@@ -178,7 +198,14 @@ void JointSolver<D>::compute_rows() {
   };
   for (int k = 0; k < int(held_.size()); ++k) {
     fill(factors_.diagonal(k), k, k);
-    if (loose_[std::size_t(factors_.first(k))]) factors_.diagonal(k)[0] = 1;
+  }
+  // what is loose stands alone, with a pivot like the others
+  for (const int k : bounded_blocks_) {
+    if (!loose_[std::size_t(bounded_row(k))]) continue;
+    const int last = factors_.size(k) - 1;
+    double pivot = last == 0 ? 1 : 0;
+    for (int r = 0; r < last; ++r) pivot = std::max(pivot, factors_.diagonal(k)[r * kMost + r]);
+    factors_.diagonal(k)[last * kMost + last] = pivot;
   }
   for (int e = 0; e < int(pairs_.size()); ++e) fill(factors_.entry(e), pairs_[e].first, pairs_[e].second);
   factors_.factorise();
@@ -208,23 +235,42 @@ double JointSolver<D>::given(const JointResponse& response) const {
   return sum;
 }
 
-// how far a limit or a rope is from its end at the present poses; false of what has none
+// the bounded row of a block at the present poses: of a rope, else along the free coordinate, away from an
+// end
 template <int D>
-bool JointSolver<D>::left(const Bounded& bounded, double& off) const {
-  const Joint<D>& joint = model_.joints[bounded.joint];
+void JointSolver<D>::bounded_row(int block, Load load, Row<D>& row) const {
+  const Joint<D>& joint = model_.joints[std::size_t(held_[std::size_t(block)])];
+  const BodyMotion<D>&a = side(joint.a.body), &b = side(joint.b.body);
+  double off[kMostHeld<D>];
   Row<D> out[kMostHeld<D>];
-  if (bounded.load > upper) return false;
+  if (one_sided(joint)) {
+    rows(joint, a, b, turn_between(joint), out, off, at_);
+  } else {
+    free_row(joint, a, b, turn_between(joint), out[0], off[0]);
+    if (load == upper) out[0].reverse();
+  }
+  row = out[0];
+}
+
+// how far a joint is from an end of its at the present poses
+template <int D>
+double JointSolver<D>::left(int number, Load load) const {
+  const Joint<D>& joint = model_.joints[std::size_t(number)];
+  Row<D> out[kMostHeld<D>];
+  double off[kMostHeld<D>];
   const BodyMotion<D>&a = side(joint.a.body), &b = side(joint.b.body);
   if (one_sided(joint)) {
-    double offs[kMostHeld<D>];
-    rows(joint, a, b, turn_between(joint), out, offs, at_);
-    off = offs[0];
-    return true;
+    rows(joint, a, b, turn_between(joint), out, off, at_);
+    return off[0];
   }
-  double way = 0;
-  free_row(joint, a, b, turn_between(joint), out[0], way);
-  off = bounded.load == lower ? way - joint.lower : joint.upper - way;
-  return true;
+  free_row(joint, a, b, turn_between(joint), out[0], off[0]);
+  return load == lower ? off[0] - joint.lower : joint.upper - off[0];
+}
+
+// what errors of that are compared with: a radian, or the size of the scene
+template <int D>
+double JointSolver<D>::size(int joint) const {
+  return equations<D>(model_.joints[std::size_t(joint)].kind).angle ? 1 : model_.scale;
 }
 
 // rows with bounds, of limits and ropes those that may come to their end in the step
@@ -237,7 +283,7 @@ void JointSolver<D>::collect_bounded(double h) {
     if (active_ == bounded_.size()) bounded_.emplace_back();
     Bounded& b = bounded_[active_];
     b.joint = i, b.load = load;
-    b.impulse = 0, b.taut = false, b.put = 0;
+    b.impulse = b.at_end = b.put = 0, b.target = 0;
 
     Row<D> out[kMostHeld<D>];
     double offs[kMostHeld<D>];
@@ -249,23 +295,34 @@ void JointSolver<D>::collect_bounded(double h) {
     }
     b.row = out[0];
     if (load == upper && !one_sided(joint)) b.row.reverse();
-    b.least = 0, b.most = kEndless, b.target = 0;
-    if (double off = 0; left(b, off)) {
+    // of what the free motion has given it may take back
+    const Hold& hold = holds_[std::size_t(i)];
+    const double before = h * hold.given[load];
+    if (load == lower || load == upper) {
+      const double off = left(i, load);
       const double sees = 4 * h * (std::fabs(speed(b.row, at_)) + g * h) + 1e-3 * model_.scale;
       if (off > sees) return;
-      b.target = pulls_[std::size_t(i)].taut ? pulls_[std::size_t(i)].target : -std::max(off, 0.0) / h;
-      b.taut = one_sided(joint) && std::fabs(off) <= kPut * model_.scale;
+      b.least = -std::max(before, 0.0), b.most = kEndless, b.target = -std::max(off, 0.0) / h;
     } else {
-      b.most = h * (load == motor ? joint.motor->most : joint.friction), b.least = -b.most;
-      if (load == motor) {
-        b.target = motors_.at(i, ends_, offs[0] + h * speed(b.row, at_), speed(b.row, at_)).speed;
-        b.ends = kEndless;
-        const Coordinate& begun = begun_motors_[std::size_t(i)];
+      const double most = h * (load == motor ? joint.motor->most : joint.friction);
+      b.least = -most - before, b.most = most - before;
+    }
+    if (load == motor) {
+      const double aims = motors_.at(i, ends_, offs[0] + h * speed(b.row, at_), speed(b.row, at_)).speed;
+      b.target = aims;
+      b.ends = kEndless;
+      const Coordinate& begun = begun_motors_[std::size_t(i)];
+      if (hold.load == motor) {
+        b.ends = motors_.lead(i, ends_ - h, h, begun.value);
+      } else {
         const double aimed = motors_.at(i, ends_ - h, begun.value, begun.rate).speed;
-        if (std::fabs(begun.rate - aimed) <= kAims * (std::fabs(aimed) + h * h))
-          b.ends = begun.value + 0.5 * h * (begun.rate + b.target);
+        if (has_speed(i, begun.rate, aimed, h)) b.ends = begun.value + 0.5 * h * (begun.rate + aims);
       }
     }
+    if (hold.load == load)
+      b.target = hold.target;
+    else if (load > upper && hold.knows)
+      b.target = hold.aims[load];
 
     b.begun_drive_work = driven_ ? given(b.row) : 0;
     compute_response(b);
@@ -371,7 +428,8 @@ void JointSolver<D>::push_bounded(int component) {
 
 // one onto places
 template <int D>
-void JointSolver<D>::shift_bounded(const Bounded& bounded, double by) {
+void JointSolver<D>::shift_bounded(Bounded& bounded, double by) {
+  bounded.put += by;
   shift(bounded.row, by);
   each_row(bounded.components[0], [&](int k, int r) { shift(rows_[r], bounded.answer[0][k] * by); });
 }
@@ -458,16 +516,13 @@ void JointSolver<D>::keep(State<D>& state, double h, const std::vector<char>* of
   }
   for (int k = 0; k < int(held_.size()); ++k) {
     if (!wanted(held_[k])) continue;
-    if (!of) {
-      const Wrench<D>&first = first_loads_[k], &last = last_loads_[k];
-      add(held_[k], {AngularVec<D>(0.5 * (first.n + last.n)), Vec<D>(0.5 * (first.f + last.f))});
-    }
+    if (!of) add(held_[k], end_loads_[k]);
     for (int r = factors_.first(k); r < factors_.first(k) + factors_.size(k); ++r)
-      add(held_[k], load(held_[k], rows_[r]) * (totals_[r] / h));
+      add(held_[k], load(held_[k], rows_[r]) * (impulses_[r] / h));
   }
   for (std::size_t k = 0; k < active_; ++k) {
     const Bounded& b = bounded_[k];
-    if (wanted(b.joint)) add(b.joint, load(b.joint, b.row) * (b.impulse / h));
+    if (wanted(b.joint)) add(b.joint, load(b.joint, b.row) * ((b.impulse - b.at_end) / h));
   }
 }
 

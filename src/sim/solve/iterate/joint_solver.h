@@ -20,8 +20,10 @@ namespace obscura::sim {
 /// Joints of the iterative solvers. All equality rows are solved at once, exactly, by a sparse factorisation,
 /// in linear time if the joints form trees: as forces in each stage of the free motion, as impulses in each
 /// iteration after it. Ropes, limits, motors and dry friction are rows with bounds, solved one after another,
-/// each with the reaction of the equality rows to it. In the free motion a rope that is taut is an equality,
-/// as long as it pulls.
+/// each with the reaction of the equality rows to it. In the free motion a rope that is taut is an equality
+/// as long as it pulls, a limit that is reached as long as it pushes, a motor that has its speed and friction
+/// that sticks as long as they are strong enough, else they are known forces. What comes to its end there is
+/// stopped by an impulse at that time.
 template <int D>
 class JointSolver final : public System {
  public:
@@ -50,10 +52,10 @@ class JointSolver final : public System {
   void project_initial_velocities(State<D>& state);
 
   /// Steps the bodies that `dynamics` has gathered from t to t + h, with the joints' forces in each stage of
-  /// the integrator; limits, motors and friction do nothing yet. After gather(), with kinematic bodies as
-  /// they are at t.
-  void step(ForwardDynamics<D>& dynamics, Integrate* integrate, State<D>& state, double t, double h,
-            Stages& stages);
+  /// the integrator, and those of their limits, motors and friction. Returns the work of kinematic bodies and
+  /// motors, J. After gather(), with kinematic bodies as they are at t.
+  double step(ForwardDynamics<D>& dynamics, Integrate* integrate, State<D>& state, double t, double h,
+              Stages& stages);
   /// The system of that step: what `dynamics` has, and f with J v' + J' v = 0.
   void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
              std::span<double> v_rate) override;
@@ -65,7 +67,7 @@ class JointSolver final : public System {
   void keep_row_speeds();
   void stop_rows() {
     std::fill(targets_.begin(), targets_.end(), 0.0);
-    pulls_.assign(model_.joints.size(), {});
+    holds_.assign(model_.joints.size(), {});
   }
   /// Starts a step of h (s) from there, at time t. All forces begin at zero.
   void begin(double h, double t = 0);
@@ -147,7 +149,13 @@ class JointSolver final : public System {
     }
   }
 
-  /// Writes the forces of the step into the state; if `of` is given, only of joints of the bodies it marks.
+  /// The forces without contacts of the joints where a step has led, at time t, for keep().
+  void find_end_forces(const State<D>& state, double t);
+  /// Whether a joint may break, so that forces are asked for after each substep.
+  bool may_break() const { return may_break_; }
+  /// Writes forces into the state: those at the end of the step without contacts, and what contacts have
+  /// changed of them, in the mean of the step. If `of` is given, those of the last iterations alone, of
+  /// joints of the bodies it marks.
   void keep(State<D>& state, double h, const std::vector<char>* of = nullptr) const;
 
   /// Breaks joints that are loaded beyond their strength, from the next step on. True if one broke.
@@ -157,21 +165,33 @@ class JointSolver final : public System {
   static constexpr double kWithoutEnd = std::numeric_limits<double>::infinity();
   // of the scene's size: how far off joints may stay, and ropes and still be taut
   static constexpr double kPut = 1e-9, kTaut = 1e-8;
+  static constexpr double kAims = 1e-6;      // of its speed: what a motor may be off it that has it
+  static constexpr double kArrives = 1e-10;  // of its size, 1/s: slower a joint stays where it is
   static constexpr double kEndless = 1e300;
 
   // a row with bounds
-  enum Load { lower, upper, motor, friction };  // a rope is an upper
+  enum Load { lower, upper, motor, friction, none };  // a rope is an upper
   struct Bounded : JointResponse {
     int joint = 0;
     Load load = lower;
     double least = 0, most = 0, target = 0;  // N s or N m s; m/s or rad/s
     double effective_mass = 0;               // effective mass, with the joints' reaction
     double impulse = 0;
-    bool taut = false;            // a rope that is at its length when the step begins
-    double put = 0;               // kg m: pseudo-impulse of the position projection, of a rope left too long
-    double ends = 0;              // rad or m: of a motor, the coordinate that its speed leads to
+    double put = 0;                     // kg m or kg m^2: pseudo-impulse of the position projection
+    double at_end = 0, rate_there = 0;  // of that what the end of the step gave; of a motor its speed before
+    double ends = 0;                    // rad or m: of a motor, the coordinate that its speed leads to
     double begun_drive_work = 0;  // work of kinematic bodies by a unit of impulse, at the start of the step
     int first = 0;                // start of its row in yields_
+  };
+
+  // An end that a joint may come to: of its length, way or angle, or of a speed that a motor or friction
+  // changes.
+  struct Stop {
+    int block = 0;
+    Load load = upper;
+    double excess = 0;           // of the speed over its aim where the step ends
+    double left = 0, speed = 0;  // m or rad, how far it is where an interval begins and how fast it leaves
+    double sign = 1;             // of the speed, less its aim
   };
 
   void plan();
@@ -209,15 +229,42 @@ class JointSolver final : public System {
   }
   void collect_bounded(double h);
   double effective_mass(const Bounded& bounded) const;
-  bool update_bounded();
+  static bool within(const Bounded& b) { return b.impulse > b.least && b.impulse < b.most; }
+  void renew(Bounded& bounded);
+  bool update_bounded(double h);
   void couple_bounded();
   void push_bounded(int component);
-  void shift_bounded(const Bounded& bounded, double by);
-  bool left(const Bounded& bounded, double& off) const;
-  void set_poses(const State<D>& state);
+  void shift_bounded(Bounded& bounded, double by);
+  double left(int joint, Load load) const;
+  double left(const Stop& stop, double t);
+  double excess(const Stop& stop, double t);
+  double size(int joint) const;
+  bool holding(const Bounded& bounded) const {
+    return holds_[std::size_t(bounded.joint)].load == bounded.load;
+  }
+  int bounded_row(int block) const { return factors_.first(block) + factors_.size(block) - 1; }
+  void bounded_row(int block, Load load, Row<D>& row) const;
+  void set_poses(const State<D>& state, double t);
   void begin_motors();
-  void find_taut_ropes(double h);
-  bool slacken_ropes();
+  bool has_speed(int joint, double rate, double aimed, double h) const {
+    return std::fabs(rate - aimed) <= kAims * (std::fabs(aimed) + h * h) + kArrives * size(joint);
+  }
+  void free_row_of(int joint, Row<D>& row, double& value) const {
+    const Joint<D>& it = model_.joints[std::size_t(joint)];
+    free_row(it, side(it.a.body), side(it.b.body), turn_between(it), row, value);
+  }
+  bool choose_holding(double t, double h);
+  void set_loose();
+  void loosen_all();
+  bool release();
+  bool overrun(double t);
+  void note_excess(double t);
+  bool leaps(const State<D>& state, double h) const;
+  double least_left(double t);
+  double strike(State<D>& state, double t);
+  double push_known(std::span<double> v_rate);
+  void push_rates(const Row<D>& row, double f, std::span<double> v_rate);
+  void solve_forces(double t, std::span<const double> v_rate);
   void save(const State<D>& state);
   void restore(State<D>& state) const;
   void put_motors();
@@ -244,9 +291,11 @@ class JointSolver final : public System {
 
   std::vector<char> broken_, frozen_;  // of the state, when plan() ran
   bool planned_ = false;
-  std::vector<int> held_;                   // joints: the blocks. Of a loose rope its row is empty
-  std::vector<char> loose_;                 // one a row: of ropes; all but in the free motion
-  std::vector<int> ropes_;                  // blocks that are ropes
+  std::vector<int> held_;            // joints: the blocks. A row that is loose is empty
+  std::vector<char> loose_;          // one a row: of ropes, limits, motors; all but in the free motion
+  std::vector<int> bounded_blocks_;  // whose last row is of a rope, a limit or a motor
+  std::vector<char> floating_;       // components: whether nothing holds them to what does not move
+  bool may_break_ = false;
   std::vector<std::pair<int, int>> pairs_;  // of blocks that share a body that moves
   std::vector<int> component_of_body_;
   std::vector<std::vector<int>> members_;  // of components
@@ -264,13 +313,27 @@ class JointSolver final : public System {
   ForwardDynamics<D>* dynamics_ = nullptr;  // while it is stepped
   const State<D>* begun_ = nullptr;
   bool first_stage_ = true;
-  std::vector<char> taut_;           // one a block: ropes that are equalities in the free motion
-  std::vector<double> least_force_;  // one a block: of a taut rope in all stages, N
-  struct Pull {
-    bool taut = false;  // in the free motion
-    double target = 0;  // m/s: of J v
+  // Of the bounded row of a block, in the free motion.
+  struct Acting {
+    Load load = none;  // as which it is an equality
+    bool released = false;
+    double drive = 0, rub = 0;   // of a motor without its speed and of friction that slides, N or N m
+    double first = 0, last = 0;  // of the equality in the first and last stage
+    double spare = 0;            // the least in all stages that it was within its bounds
+    double beyond = 0;           // the force of that stage
   };
-  std::vector<Pull> pulls_;  // one a joint: of ropes
+  std::vector<Acting> acting_;  // one a block
+  std::vector<Stop> stops_;
+  std::vector<int> overrun_;  // numbers of stops_
+  struct Hold {
+    Load load = none;   // in the free motion
+    double target = 0;  // m/s or rad/s: of J v
+    // of motors and friction: what J v is to be for no excess of their speed where the step ends
+    bool knows = false;
+    double aims[4] = {};
+    double given[4] = {};  // N or N m: what it has given as each load, in the mean
+  };
+  std::vector<Hold> holds_;  // one a joint
   struct Saved {
     Vec<D> x = Vec<D>::Zero(), v = Vec<D>::Zero();
     Orientation<D> turn = no_rotation<D>();
@@ -282,9 +345,9 @@ class JointSolver final : public System {
     double value = 0, rate = 0;  // rad or m; a second
   };
   std::vector<Coordinate> begun_motors_;  // one a joint: of those with a motor, where the step begins
-  std::vector<Wrench<D>> first_loads_,
-      last_loads_;                // of each joint of held_ in its first and last stage, on a
-  std::vector<Bounded> bounded_;  // the first `active_` are in use
+  std::vector<double> end_rates_;
+  std::vector<Wrench<D>> end_loads_;  // of each joint of held_ at the end of the step, on a
+  std::vector<Bounded> bounded_;      // the first `active_` are in use
   std::size_t active_ = 0;
   std::vector<int> by_component_;     // numbers of them by component, those of component -1 first
   std::vector<int> component_first_;  // where each component begins there

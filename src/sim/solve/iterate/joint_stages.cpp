@@ -1,6 +1,14 @@
 // The free motion of bodies on joints: in each stage of the integrator that the scene names,
-//   v' = a + M^-1 J f            f: J v' + J' v = 0
-// of what joints hold and of taut ropes. A rope that would push goes slack, and the step is taken again.
+//   v' = a + M^-1 J f            f: J v' + J' v = 0, of motors their speed's rate
+// of what joints hold, of ropes that are taut, limits that are reached, motors that have their speed and
+// friction that sticks. One that would have to pull where it pushes, or harder than it can, lets go, and the
+// step is taken again; a motor and friction then give all they can, as they do where they slide.
+//
+// Where within the step friction sticks or a motor reaches its speed, a new one begins, and what comes to its
+// end is stopped at that time, without a rebound:
+//   tau    C(x(tau)) = 0         by false position, each time with a step of tau from the beginning
+//   v'     = v + M^-1 J p        p: J v' = 0 of all that holds, p >= 0 of ropes and limits; motors give none
+// and from there the rest of the step is taken.
 
 #include "sim/solve/iterate/joint_solver.h"
 
@@ -9,59 +17,332 @@
 
 namespace obscura::sim {
 
+namespace {
+
+constexpr int kMostStrikes = 8;        // of a step
+constexpr int kMostStopped = 50;       // bodies; of more, iterations stop what comes to its end
+constexpr int kMostTries = 40;         // for the time of one
+constexpr double kAtEnd = 1e-13;       // of a joint's size: nearer to its end it is there
+constexpr double kOver = 1e-12;        // farther beyond it is
+constexpr double kNothingLeft = 1e-9;  // of a step: what is left of it is none
+constexpr int kPieces = 64;            // of a step that is too long
+constexpr double kLeap = 2;            // times the energy that it had
+constexpr double kFalls = 100;         // times what it gains by gravity in a step
+constexpr double kHalfTurn = 3;        // rad, nearly
+constexpr double kSlower = 2;          // times what forces change in a step: iterations stop it as well
+
+}  // namespace
+
 template <int D>
-void JointSolver<D>::step(ForwardDynamics<D>& dynamics, Integrate* integrate, State<D>& state, double t,
-                          double h, Stages& stages) {
+double JointSolver<D>::step(ForwardDynamics<D>& dynamics, Integrate* integrate, State<D>& state, double t,
+                            double h, Stages& stages) {
   dynamics_ = &dynamics, begun_ = &state;
-  set_poses(state);
+  set_poses(state, t);
   begin_motors();
-  find_taut_ropes(h);
-  if (!ropes_.empty()) save(state);
-  for (;;) {
-    first_stage_ = true;
-    dynamics.step(integrate, state, t, h, stages, held_.empty() ? nullptr : this);
-    if (!slacken_ropes()) break;
+  double given = 0;
+  const auto move = [&](double from, double span, int pieces) {
+    first_stage_ = true, given = 0;
+    for (Acting& acting : acting_) acting.spare = kEndless;
+    for (int i = 0; i < pieces; ++i) {
+      dynamics.step(integrate, state, from + i * (span / pieces), span / pieces, stages,
+                    held_.empty() ? nullptr : this);
+      given += dynamics.work();
+    }
+  };
+  const auto step_free = [&](double from, double span) {
+    move(from, span, 1);
+    if (held_.empty() || !leaps(state, h)) return;
     restore(state);
+    move(from, span, kPieces);
+  };
+  if (bounded_blocks_.empty()) {
+    save(state);
+    step_free(t, h);
+    return given;
   }
-  for (const int k : ropes_) loose_[std::size_t(factors_.first(k))] = 1;
+  double work = 0, done = 0;
+  if (choose_holding(t, h)) work += strike(state, t), choose_holding(t, h);
+  for (int strikes = 0;; ++strikes) {
+    const double from = t + done, span = h - done;
+    save(state);
+    for (Stop& stop : stops_) {
+      Row<D> row;
+      bounded_row(stop.block, stop.load, row);
+      stop.speed = speed(row, at_);
+      stop.sign = excess(stop, from) < 0 ? -1 : 1;
+      stop.left = left(stop, from);
+    }
+    set_loose();
+    step_free(from, span);
+    while (release()) {
+      restore(state), set_loose();
+      step_free(from, span);
+    }
+    set_poses(state, t + h);
+    if (strikes == kMostStrikes || int(dynamics.bodies().size()) > kMostStopped || !overrun(t + h)) break;
+
+    // false position, with half the weight of an end that stays (Dowell and Jarratt 1971)
+    double low = 0, high = span, at_low = kEndless, at_high = least_left(t + h), until = span;
+    bool was_low = false, stops = false;
+    for (const int i : overrun_) {
+      const Stop& stop = stops_[std::size_t(i)];
+      at_low = std::min(at_low, stop.left / size(held_[std::size_t(stop.block)]));
+      stops = stops || stop.load == lower || stop.load == upper;
+    }
+    for (int i = 0; i < kMostTries; ++i) {
+      until = (low * at_high - high * at_low) / (at_high - at_low);
+      restore(state);
+      step_free(from, until);
+      set_poses(state, from + until);
+      const double now = least_left(from + until);
+      if (std::fabs(now) <= kAtEnd) break;
+      if (now > 0) {
+        low = until, at_low = now;
+        if (i > 0 && was_low) at_high *= 0.5;
+      } else {
+        high = until, at_high = now;
+        if (i > 0 && !was_low) at_low *= 0.5;
+      }
+      was_low = now > 0;
+    }
+    work += given;
+    done += until;
+    if (stops) work += strike(state, t + done);
+    if (h - done <= kNothingLeft * h) {
+      note_excess(t + h);
+      loosen_all();
+      return work;
+    }
+    if (choose_holding(t + done, h)) work += strike(state, t + done), choose_holding(t + done, h);
+  }
+  note_excess(t + h);
+  loosen_all();
+  return work + given;
+}
+
+// Whether bodies that move gain energy so fast that the step is too long for them, as where a loop of joints
+// passes a dead centre.
+template <int D>
+bool JointSolver<D>::leaps(const State<D>& state, double h) const {
+  double before = 0, now = 0, mass = 0;
+  for (std::size_t i = 0; i < saved_.size(); ++i) {
+    const int body = dynamics_->bodies()[i];
+    const Body<D>& its = model_.bodies[std::size_t(body)];
+    if (!member_[std::size_t(body)]) continue;
+    mass += its.mass;
+    before += its.mass * saved_[i].v.squaredNorm(),
+        now += its.mass * state.v[std::size_t(body)].squaredNorm();
+    const int k = turning(state, body);
+    if (k < 0) continue;
+    const double most = its.inertia.maxCoeff();
+    before += most * saved_[i].spin.squaredNorm(), now += most * state.spin[std::size_t(k)].squaredNorm();
+  }
+  return now > kLeap * before && before > mass * kFalls * h * h * model_.gravity.squaredNorm();
 }
 
 template <int D>
-void JointSolver<D>::set_poses(const State<D>& state) {
+void JointSolver<D>::set_poses(const State<D>& state, double t) {
   for (const int body : bodies_) {
+    if (const int drive = drives_.number(body); drive >= 0) {
+      const DrivenMotion<D> its = drives_.at(drive, t);
+      at_[body] = its.at, turn_[body] = its.turn;
+    }
     if (!response_.moves(body)) continue;
     at_[body] = sim::body_motion(state, body);
     if (const int k = turning(state, body); k >= 0) turn_[body] = state.turn[std::size_t(k)];
   }
 }
 
-// ropes at their length that do not change it faster than gravity can in a step: taut as long as they pull
+// Ropes at their length that do not change it faster than gravity can in a step, limits that are reached,
+// motors that have their speed and friction that sticks; known forces of other motors and friction. True if
+// something comes to its end there.
 template <int D>
-void JointSolver<D>::find_taut_ropes(double h) {
-  const double near = kTaut * model_.scale,
-               slow = std::max(std::sqrt(model_.gravity.squaredNorm()) * h, near / h);
-  pulls_.assign(model_.joints.size(), {});
-  for (const int k : ropes_) {
-    const Joint<D>& joint = model_.joints[std::size_t(held_[std::size_t(k)])];
-    Row<D> out[kMostHeld<D>];
-    double off[kMostHeld<D>];
-    rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off, at_);
-    taut_[std::size_t(k)] = std::fabs(off[0]) <= near && std::fabs(speed(out[0], at_)) <= slow;
-    loose_[std::size_t(factors_.first(k))] = !taut_[std::size_t(k)];
-    least_force_[std::size_t(k)] = kEndless;
+bool JointSolver<D>::choose_holding(double t, double h) {
+  const double falls = std::sqrt(model_.gravity.squaredNorm()) * h;
+  bool arrives = false;
+  for (const int k : bounded_blocks_) acting_[std::size_t(k)] = {};
+  for (const Stop& stop : stops_) {
+    if (stop.load > upper) continue;
+    const int i = held_[std::size_t(stop.block)];
+    Acting& acting = acting_[std::size_t(stop.block)];
+    const double near = kTaut * size(i), off = left(i, stop.load);
+    if (acting.load != none || off > near) continue;
+    Row<D> row;
+    bounded_row(stop.block, stop.load, row);
+    const double fast = speed(row, at_);
+    const double slow = one_sided(model_.joints[std::size_t(i)]) ? std::max(falls, near / h) : near / h;
+    if (off < -near) continue;
+    arrives = arrives || fast < -kArrives * size(i);
+    if (std::fabs(fast) <= slow) acting.load = stop.load;
   }
+  for (const int k : bounded_blocks_) {
+    const int i = held_[std::size_t(k)];
+    const Joint<D>& joint = model_.joints[std::size_t(i)];
+    Acting& acting = acting_[std::size_t(k)];
+    if (!joint.motor && !(joint.friction > 0)) continue;
+    Row<D> row;
+    double value = 0;
+    free_row_of(i, row, value);
+    const double rate = speed(row, at_);
+    const bool still = std::fabs(rate) <= kArrives * size(i);
+    const bool ends = acting.load != none;
+    if (joint.motor) {
+      const double aimed = motors_.at(i, t, value, rate).speed;
+      if (!ends && has_speed(i, rate, aimed, h))
+        acting.load = motor;
+      else
+        acting.drive = rate < aimed ? joint.motor->most : rate > aimed ? -joint.motor->most : 0;
+    }
+    if (!(joint.friction > 0) || (still && ends)) continue;
+    if (!still)
+      acting.rub = rate > 0 ? -joint.friction : joint.friction;
+    else if (acting.load == none)
+      acting.load = friction;
+  }
+  return arrives;
 }
 
-// ropes that would have had to push; true if there are any
 template <int D>
-bool JointSolver<D>::slacken_ropes() {
+void JointSolver<D>::set_loose() {
+  for (const int k : bounded_blocks_)
+    loose_[std::size_t(bounded_row(k))] = acting_[std::size_t(k)].load == none;
+}
+
+template <int D>
+void JointSolver<D>::loosen_all() {
+  for (const int k : bounded_blocks_) loose_[std::size_t(bounded_row(k))] = 1;
+}
+
+// What was beyond its bounds in a stage: what then holds in its place, or its known force. True if there is
+// any.
+template <int D>
+bool JointSolver<D>::release() {
   bool any = false;
-  for (const int k : ropes_) {
-    if (!taut_[std::size_t(k)] || least_force_[std::size_t(k)] >= 0) continue;
-    taut_[std::size_t(k)] = 0, loose_[std::size_t(factors_.first(k))] = 1, any = true;
+  for (const int k : bounded_blocks_) {
+    Acting& acting = acting_[std::size_t(k)];
+    if (acting.load == none || acting.spare >= 0) continue;
+    const Joint<D>& joint = model_.joints[std::size_t(held_[std::size_t(k)])];
+    const bool pulled = acting.beyond > 0;
+    any = true;
+    if (acting.load == friction) {
+      acting.rub = pulled ? joint.friction : -joint.friction;
+      acting.load = none;
+      continue;
+    }
+    if (acting.load == motor)
+      acting.drive = pulled ? joint.motor->most : -joint.motor->most;
+    else
+      acting.released = true;
+    acting.load = joint.friction > 0 && acting.rub == 0 ? friction : none;
   }
-  for (const int k : ropes_) least_force_[std::size_t(k)] = kEndless;
   return any;
+}
+
+// the speed of a joint's coordinate less what a motor aims at, or friction
+template <int D>
+double JointSolver<D>::excess(const Stop& stop, double t) {
+  if (stop.load <= upper) return 0;
+  const int i = held_[std::size_t(stop.block)];
+  Row<D> row;
+  double value = 0;
+  free_row_of(i, row, value);
+  const double rate = speed(row, at_);
+  return rate - (stop.load == motor ? motors_.at(i, t, value, rate).speed : 0);
+}
+
+template <int D>
+void JointSolver<D>::note_excess(double t) {
+  for (Stop& stop : stops_) stop.excess = excess(stop, t);
+}
+
+// how far a joint is from a stop at the poses and velocities at hand
+template <int D>
+double JointSolver<D>::left(const Stop& stop, double t) {
+  return stop.load > upper ? stop.sign * excess(stop, t) : left(held_[std::size_t(stop.block)], stop.load);
+}
+
+// the stops that were passed in an interval that ended at t, into overrun_; true if there are any
+template <int D>
+bool JointSolver<D>::overrun(double t) {
+  overrun_.clear();
+  for (int i = 0; i < int(stops_.size()); ++i) {
+    const Stop& stop = stops_[std::size_t(i)];
+    const Acting& acting = acting_[std::size_t(stop.block)];
+    const int joint = held_[std::size_t(stop.block)];
+    const double least = (stop.load > upper ? kArrives : kOver) * size(joint);
+    if (acting.load == stop.load || stop.left <= least) continue;
+    if (stop.load <= upper && acting.released) continue;
+    const double now = left(stop, t);
+    if (now >= -kOver * size(joint)) continue;
+    if (stop.load > upper) {
+      // a limit keeps its speed, whatever its motor and friction are for
+      if (acting.load > upper) overrun_.push_back(i);
+      continue;
+    }
+    // an angle in space is told within a turn
+    const bool round = D == 3 && equations<D>(model_.joints[std::size_t(joint)].kind).angle;
+    if (round && stop.left - now > kHalfTurn) continue;
+    Row<D> row;
+    bounded_row(stop.block, stop.load, row);
+    if (-stop.speed > kSlower * std::fabs(speed(row, at_) - stop.speed)) overrun_.push_back(i);
+  }
+  return !overrun_.empty();
+}
+
+// of those, how far the farthest is from its end, in its size
+template <int D>
+double JointSolver<D>::least_left(double t) {
+  double least = kEndless;
+  for (const int i : overrun_) {
+    const Stop& stop = stops_[std::size_t(i)];
+    least = std::min(least, left(stop, t) / size(held_[std::size_t(stop.block)]));
+  }
+  return least;
+}
+
+// Stops what is at its end and comes beyond. The work of kinematic bodies, J.
+template <int D>
+double JointSolver<D>::strike(State<D>& state, double t) {
+  set_poses(state, t);
+  for (const int k : bounded_blocks_) {
+    Acting& acting = acting_[std::size_t(k)];
+    if (acting.load > upper) acting.load = none;
+  }
+  for (const Stop& stop : stops_) {
+    const int i = held_[std::size_t(stop.block)];
+    Acting& acting = acting_[std::size_t(stop.block)];
+    if (stop.load > upper || acting.load != none || std::fabs(left(i, stop.load)) > kTaut * size(i)) continue;
+    Row<D> row;
+    bounded_row(stop.block, stop.load, row);
+    if (speed(row, at_) < 0) acting.load = stop.load;
+  }
+  for (bool again = true; again;) {
+    set_loose();
+    compute_rows();
+    for (std::size_t r = 0; r < rows_.size(); ++r) rhs_[r] = -speed(rows_[r], at_);
+    factors_.solve(rhs_.data());
+    again = false;
+    double least = 0;
+    int worst = -1;
+    for (const int k : bounded_blocks_) {
+      const double p = rhs_[std::size_t(bounded_row(k))];
+      if (acting_[std::size_t(k)].load != none && p < least) least = p, worst = k;
+    }
+    if (worst < 0) break;
+    // what joints pull from its end anyway
+    acting_[std::size_t(worst)].load = none, again = true;
+  }
+  double work = 0;
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    if (driven_) work += rhs_[r] * drive_works_[r];
+    push(rows_[r], rhs_[r]);
+  }
+  for (const int body : bodies_) {
+    if (!response_.moves(body)) continue;
+    state.v[std::size_t(body)] = at_[body].v;
+    if (const int k = turning(state, body); k >= 0) state.spin[std::size_t(k)] = at_[body].w;
+  }
+  return work;
 }
 
 template <int D>
@@ -122,6 +403,17 @@ double JointSolver<D>::row_acceleration(const Row<D>& row, std::span<const doubl
   return sum;
 }
 
+// M^-1 J' f, onto accelerations
+template <int D>
+void JointSolver<D>::push_rates(const Row<D>& row, double f, std::span<double> v_rate) {
+  each_push(row, f, [&](int body, const Vec<D>& dv, const AngularVec<D>& dw) {
+    const int place = dynamics_->place(body);
+    Eigen::Map<Vec<D>>(v_rate.data() + D * place) += dv;
+    if (const int at = dynamics_->spin_start(place); at >= 0)
+      Eigen::Map<AngularVec<D>>(v_rate.data() + at) += from_room<D>(at_[body].room_from_body, dw);
+  });
+}
+
 template <int D>
 void JointSolver<D>::rates(double t, std::span<const double> d, std::span<const double> v,
                            std::span<double> d_rate, std::span<double> v_rate) {
@@ -139,61 +431,137 @@ void JointSolver<D>::rates(double t, std::span<const double> d, std::span<const 
         turn_[body][0] = begun_->turn[std::size_t(turning(*begun_, body))][0] + d[std::size_t(at)];
     }
   }
+  const double drives = push_known(v_rate);
+  solve_forces(t, v_rate);
+  for (std::size_t r = 0; r < rows_.size(); ++r) push_rates(rows_[r], rhs_[r], v_rate);
+  const int work = dynamics_->work_place();
+  if (work >= 0) v_rate[std::size_t(work)] += drives;
+  for (std::size_t r = 0; work >= 0 && driven_ && r < rows_.size(); ++r)
+    v_rate[std::size_t(work)] += rhs_[r] * drive_works_[r];
+  for (const int k : bounded_blocks_) {
+    Acting& acting = acting_[std::size_t(k)];
+    if (acting.load == none) continue;
+    const Row<D>& row = rows_[std::size_t(bounded_row(k))];
+    const double f = rhs_[std::size_t(bounded_row(k))];
+    const Joint<D>& joint = model_.joints[std::size_t(held_[std::size_t(k)])];
+    if (acting.load == motor && work >= 0) v_rate[std::size_t(work)] += f * speed(row, at_);
+    const double spare = acting.load == motor      ? joint.motor->most - std::fabs(f)
+                         : acting.load == friction ? joint.friction - std::fabs(f)
+                                                   : f;
+    if (spare < acting.spare) acting.spare = spare, acting.beyond = f;
+    if (first_stage_) acting.first = f;
+    acting.last = f;
+  }
+  first_stage_ = false;
+}
+
+// Known forces of motors and friction, onto accelerations. The power of motors, W.
+template <int D>
+double JointSolver<D>::push_known(std::span<double> v_rate) {
+  double power = 0;
+  for (const int k : bounded_blocks_) {
+    const Acting& acting = acting_[std::size_t(k)];
+    if (acting.drive == 0 && acting.rub == 0) continue;
+    Row<D> row;
+    double value = 0;
+    free_row_of(held_[std::size_t(k)], row, value);
+    power += acting.drive * speed(row, at_);
+    push_rates(row, acting.drive + acting.rub, v_rate);
+  }
+  return power;
+}
+
+// The forces of all rows, into rhs_, at the poses and velocities at hand, where the bodies have the
+// accelerations v_rate without them.
+template <int D>
+void JointSolver<D>::solve_forces(double t, std::span<const double> v_rate) {
   compute_rows();
   for (std::size_t r = 0; r < rows_.size(); ++r)
     rhs_[r] = -row_acceleration(rows_[r], v_rate) - rows_[r].velocity_product;
+  for (const int k : bounded_blocks_) {
+    if (acting_[std::size_t(k)].load != motor) continue;
+    const int i = held_[std::size_t(k)];
+    Row<D> row;
+    double value = 0;
+    free_row_of(i, row, value);
+    rhs_[std::size_t(bounded_row(k))] += motors_.at(i, t, value, speed(row, at_)).rate;
+  }
   factors_.solve(rhs_.data());
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
-    each_push(rows_[r], rhs_[r], [&](int body, const Vec<D>& dv, const AngularVec<D>& dw) {
-      const int place = dynamics_->place(body);
-      Eigen::Map<Vec<D>>(v_rate.data() + D * place) += dv;
-      if (const int at = dynamics_->spin_start(place); at >= 0)
-        Eigen::Map<AngularVec<D>>(v_rate.data() + at) += from_room<D>(at_[body].room_from_body, dw);
-    });
+}
+
+// What acts at the end of the free motion acts on there; ropes and limits that would have to pull let go.
+template <int D>
+void JointSolver<D>::find_end_forces(const State<D>& state, double t) {
+  if (held_.empty()) return;
+  set_poses(state, t);
+  const std::span<const double> without = dynamics_->accelerations(state, t);
+  end_rates_.assign(without.begin(), without.end());
+  push_known(end_rates_);
+  for (bool again = true; again;) {
+    set_loose();
+    solve_forces(t, end_rates_);
+    again = false;
+    double least = 0;
+    int worst = -1;
+    for (const int k : bounded_blocks_) {
+      const Load load = acting_[std::size_t(k)].load;
+      const double f = rhs_[std::size_t(bounded_row(k))];
+      if ((load == lower || load == upper) && f < least) least = f, worst = k;
+    }
+    if (worst >= 0) acting_[std::size_t(worst)].load = none, again = true;
   }
-  if (const int work = dynamics_->work_place(); work >= 0 && driven_) {
-    for (std::size_t r = 0; r < rows_.size(); ++r) v_rate[std::size_t(work)] += rhs_[r] * drive_works_[r];
-  }
+  // once more for what rows of different scales leave
+  ways_ = rhs_;
+  for (std::size_t r = 0; r < rows_.size(); ++r) push_rates(rows_[r], ways_[r], end_rates_);
+  solve_forces(t, end_rates_);
+  for (std::size_t r = 0; r < rows_.size(); ++r) rhs_[r] += ways_[r];
   for (std::size_t k = 0; k < held_.size(); ++k) {
-    last_loads_[k] = {};
+    end_loads_[k] = {};
     const int first = factors_.first(int(k));
     for (int r = first; r < first + factors_.size(int(k)); ++r)
-      last_loads_[k] += load(held_[k], rows_[std::size_t(r)]) * rhs_[std::size_t(r)];
+      end_loads_[k] += load(held_[k], rows_[std::size_t(r)]) * rhs_[std::size_t(r)];
   }
-  for (const int k : ropes_) {
-    if (taut_[std::size_t(k)])
-      least_force_[std::size_t(k)] =
-          std::min(least_force_[std::size_t(k)], rhs_[std::size_t(factors_.first(k))]);
+  for (const int k : bounded_blocks_) {
+    const Acting& acting = acting_[std::size_t(k)];
+    if (acting.drive == 0 && acting.rub == 0) continue;
+    Row<D> row;
+    double value = 0;
+    free_row_of(held_[std::size_t(k)], row, value);
+    end_loads_[std::size_t(k)] += load(held_[std::size_t(k)], row) * (acting.drive + acting.rub);
   }
-  if (first_stage_) first_loads_ = last_loads_;
-  first_stage_ = false;
+  loosen_all();
 }
 
 template <int D>
 void JointSolver<D>::keep_row_speeds() {
+  holds_.assign(model_.joints.size(), {});
   for (std::size_t r = 0; r < rows_.size(); ++r) targets_[r] = speed(rows_[r], at_);
-  for (const int k : ropes_) {
-    if (!taut_[std::size_t(k)]) continue;
-    const int i = held_[std::size_t(k)];
-    const Joint<D>& joint = model_.joints[std::size_t(i)];
-    Row<D> out[kMostHeld<D>];
-    double off[kMostHeld<D>];
-    rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off, at_);
-    pulls_[std::size_t(i)] = {true, speed(out[0], at_)};
+  for (const int k : bounded_blocks_) {
+    const Acting& acting = acting_[std::size_t(k)];
+    Hold& hold = holds_[std::size_t(held_[std::size_t(k)])];
+    hold.load = acting.load;
+    hold.given[motor] = acting.drive, hold.given[friction] = acting.rub;
+    if (acting.load == none) continue;
+    Row<D> row;
+    bounded_row(k, acting.load, row);
+    hold.target = speed(row, at_);
+    hold.given[acting.load] = 0.5 * (acting.first + acting.last);
+  }
+  for (const Stop& stop : stops_) {
+    if (stop.load <= upper) continue;
+    Row<D> row;
+    bounded_row(stop.block, stop.load, row);
+    Hold& hold = holds_[std::size_t(held_[std::size_t(stop.block)])];
+    hold.knows = true, hold.aims[stop.load] = speed(row, at_) - stop.excess;
   }
 }
 
-#define OBSCURA_INSTANTIATE(D)                                                                             \
-  template void JointSolver<D>::step(ForwardDynamics<D>&, Integrate*, State<D>&, double, double, Stages&); \
-  template void JointSolver<D>::set_poses(const State<D>&);                                                \
-  template void JointSolver<D>::find_taut_ropes(double);                                                   \
-  template bool JointSolver<D>::slacken_ropes();                                                           \
-  template void JointSolver<D>::save(const State<D>&);                                                     \
-  template void JointSolver<D>::restore(State<D>&) const;                                                  \
-  template void JointSolver<D>::begin_motors();                                                            \
-  template double JointSolver<D>::row_acceleration(const Row<D>&, std::span<const double>) const;          \
-  template void JointSolver<D>::rates(double, std::span<const double>, std::span<const double>,            \
-                                      std::span<double>, std::span<double>);                               \
+#define OBSCURA_INSTANTIATE(D)                                                                               \
+  template double JointSolver<D>::step(ForwardDynamics<D>&, Integrate*, State<D>&, double, double, Stages&); \
+  template void JointSolver<D>::loosen_all();                                                                \
+  template void JointSolver<D>::find_end_forces(const State<D>&, double);                                    \
+  template void JointSolver<D>::rates(double, std::span<const double>, std::span<const double>,              \
+                                      std::span<double>, std::span<double>);                                 \
   template void JointSolver<D>::keep_row_speeds()
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);

@@ -539,8 +539,8 @@ void PlaneIterative::integrate_jointed(StepPart<D> part) {
   dynamics_.gather(state, false, joints_.bodies());
   stages_.reserve(std::size_t(dynamics_.size()));
   poses_to_joints();
-  joints_.step(dynamics_, integrate(model_.integrator), state, part.t, part.h, stages_);
-  if (!state.work.empty()) state.work[0] += dynamics_.work();
+  const double work = joints_.step(dynamics_, integrate(model_.integrator), state, part.t, part.h, stages_);
+  if (!state.work.empty()) state.work[0] += work;
   for (const int i : dynamics_.bodies()) {
     const Motion o = old_[i];
     if (Motion& v = moving_[i]; v.im > 0) {

@@ -446,13 +446,15 @@ void SpaceIterative::move_unconstrained(StepPart<D> part) {
   State<D>& state = part.state;
   dynamics_.gather(state, true);
   stages_.reserve(std::size_t(dynamics_.size()));
+  double work = 0;
   if (joints_.empty()) {
     dynamics_.step(integrate(model_.integrator), state, part.t, part.h, stages_);
+    work = dynamics_.work();
   } else {
     poses_to_joints();
-    joints_.step(dynamics_, integrate(model_.integrator), state, part.t, part.h, stages_);
+    work = joints_.step(dynamics_, integrate(model_.integrator), state, part.t, part.h, stages_);
   }
-  if (!state.work.empty()) state.work[0] += dynamics_.work();
+  if (!state.work.empty()) state.work[0] += work;
   move_driven(state, part.t, part.h);
   v_free_ = state.v, w_free_ = state.spin, x_free_ = state.x, turn_free_ = state.turn;
   energy_guard_.open(state);
