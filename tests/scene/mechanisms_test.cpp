@@ -128,6 +128,7 @@ TEST(Pulley, PullsAndNeverPushes) {
     EXPECT_NEAR(now.bodies[left].position.y(), 3 * 0.2 - 0.5 * kEarth * 0.04, 1e-6) << manner.name;
     EXPECT_NEAR(now.bodies[right].position.y(), -0.5 * kEarth * 0.04, 1e-6) << manner.name;
     EXPECT_NEAR(now.joints[0].force.norm(), 0, 1e-9) << manner.name;
+    EXPECT_NEAR(now.joints[0].slack, 3 * 0.2 - kEarth * 0.04, 1e-6) << manner.name;
     for (const double t : {0.5, 1.0, 1.5}) {
       now = scene.at(t);
       EXPECT_LT(8 - now.bodies[left].position.y() - now.bodies[right].position.y(), 8 + 2 + 1e-3)
@@ -197,6 +198,114 @@ TEST(Pulley, InSpaceRunsOverPoints) {
     EXPECT_NEAR(now.bodies[number_of(scene, "left")].velocity.y(), a * 0.7, 1e-9) << manner.name;
     EXPECT_NEAR(now.bodies[number_of(scene, "right")].velocity.y(), -a * 0.7, 1e-9) << manner.name;
     EXPECT_NEAR(now.joints[0].force.norm(), kEarth + a, 1e-8) << manner.name;
+  }
+}
+
+// --- ropes that wind up
+
+// A bob on a string whose other end a post of radius R holds, at a right angle to it with speed v: it runs
+// along the involute of the circle, l^2 = l0^2 - 2 R v t, and the string has turned by (l0 - l) / R. `side`:
+// 1 winds clockwise, -1 is its mirror image.
+constexpr double kPost = 0.1, kString = 1.5, kBobSpeed = 2;
+
+std::string bob_around_post(const std::string& physics, double side, const std::string& post,
+                            const std::string& end) {
+  return fmt::format(
+      "duration = 1000\n[room]\nsize = [20, 20]\ncorner = [-10, -10]\nwalls = 'none'\ngravity = [0, 0]\n"
+      "{}\n[[ball]]\nname = 'post'\nradius = {}\nmass = 1e12\nposition = [0, 0]\n{}"
+      "[[particle]]\nname = 'bob'\nmass = 1\nposition = [{}, {}]\nvelocity = [0, {}]\n"
+      "[[joint]]\nname = 'string'\ntype = 'pulley'\nbetween = ['bob', {}]\nover = ['post']\n",
+      physics, kPost, post, kString, side * kPost, -side * kBobSpeed, end);
+}
+double string_left(double t) { return std::sqrt(kString * kString - 2 * kPost * kBobSpeed * t); }
+sim::Vec3 bob_on_involute(double t, double side) {
+  const double l = string_left(t), turn = -(kString - l) / kPost, c = std::cos(turn), s = std::sin(turn);
+  return {c * l - s * kPost, side * (s * l + c * kPost), 0};
+}
+
+TEST(Pulley, AStringWindsUpAroundAPostAllRoundsCounted) {
+  const std::string fixed = "fixed = true\n", pin = "[[joint]]\ntype = 'pin'\nbetween = ['post', 'room']\n";
+  for (const Manner& manner : kManners) {
+    for (const auto& [rate, close] : {std::pair(60, 2e-4), std::pair(600, 2e-8)}) {
+      for (const double side : {-1, 1}) {
+        for (const auto& [post, end] :
+             {std::pair(fixed, std::string("'post'")), std::pair(pin, std::string("'post'")),
+              std::pair(fixed, fmt::format("[-4, {}]", -side))}) {
+          const TextRun scene(
+              bob_around_post(fmt::format("{}\nrate = {}", manner.keys, rate), side, post, end));
+          // at 1.7 s it has gone half a round, at 4.0 s a whole one, at 5 s 1.6
+          for (const double t : {1.0, 1.8, 3.0, 4.1, 5.0})
+            EXPECT_NEAR((scene.place(t, number_of(scene, "bob")) - bob_on_involute(t, side)).norm(), 0, close)
+                << manner.name << " " << rate << " " << side << " " << t << post << end;
+        }
+      }
+    }
+  }
+}
+
+TEST(Pulley, AStringThatWindsUpGoesOnFromACheckpointWithItsRounds) {
+  for (const Manner& manner : kManners) {
+    const Scene scene = parse(bob_around_post(manner.keys, 1, "fixed = true\n", "'post'"), "a.toml");
+    const auto words_at = [&](sim::Run& run, const char* t) {
+      (void)run.at(*sim::parse_rational(t));
+      return run.words();
+    };
+    for (const char* const cut : {"1.65", "1.7", "4.5"}) {
+      const auto whole = scene.run(), part = scene.run();
+      (void)words_at(*part, cut);
+      const auto resumed = scene.run(part->saved());
+      ASSERT_TRUE(resumed);
+      EXPECT_EQ(words_at(*resumed, "5"), words_at(*whole, "5")) << manner.name << cut;
+    }
+  }
+}
+
+// Atwood's machine whose one weight swings up behind the wheel, where its rope has turned by more than half a
+// round: the energy stays.
+TEST(Pulley, ASwingingAtwoodMachineWithAWheelKeepsItsEnergyBeyondHalfARound) {
+  for (const char* const manner : {"solver = 'direct'", "solver = 'iterative'", "collision = 'event'"}) {
+    for (const double side : {-1, 1}) {
+      const TextRun scene(fmt::format(
+          "duration = 1000\n[room]\nsize = [20, 20]\ncorner = [-10, -10]\nwalls = 'none'\n"
+          "[physics]\nrate = 1200\n{}\n"
+          "[[ball]]\nname = 'wheel'\nradius = 0.1\nmass = 1\nposition = [0, 2]\n"
+          "[[joint]]\ntype = 'pin'\nbetween = ['wheel', 'room']\n"
+          "[[particle]]\nname = 'weight'\nmass = 3\nposition = [{}, -1]\n"
+          "[[particle]]\nname = 'bob'\nmass = 1\nposition = [{}, 2]\nvelocity = [0, -6]\n"
+          "[[joint]]\nname = 'rope'\ntype = 'pulley'\nbetween = ['weight', 'bob']\nover = ['wheel']\n",
+          manner, -0.1 * side, 1.8 * side));
+      const std::size_t bob = number_of(scene, "bob");
+      // the start jerks the weight
+      const double begun = scene.at(0.01).energies.total();
+      double turned = 0, angle = 0, most = 0;
+      for (int i = 1; i <= 60; ++i) {
+        const sim::Snapshot now = scene.at(0.05 * i);
+        // by iterations to the first order; a round too few or too many would be of 20 J
+        EXPECT_NEAR(now.energies.total(), begun, std::string(manner).ends_with("'iterative'") ? 0.3 : 1e-8)
+            << manner << side << " " << i;
+        const sim::Vec3 far = now.bodies[bob].position - sim::Vec3(0, 2, 0);
+        const double next = std::atan2(far.y(), side * far.x());
+        turned += std::remainder(next - angle, 2 * std::numbers::pi), angle = next;
+        most = std::max(most, std::fabs(turned));
+      }
+      EXPECT_GT(most, std::numbers::pi) << manner << side;
+    }
+  }
+}
+
+// The bob comes to the rim at t = l0^2 / (2 R v); the run ends in the steps before that, and tells of it.
+TEST(Pulley, ARopeThatIsWoundUpToItsEndEndsTheRun) {
+  const double when = kString * kString / (2 * kPost * kBobSpeed);
+  for (const Manner& manner : kManners) {
+    for (const double side : {-1, 1}) {
+      const TextRun scene(bob_around_post(manner.keys + "\nrate = 600", side, "fixed = true\n", "'post'"));
+      const auto outcome = scene.run->at(*sim::parse_rational("6"));
+      const auto* trouble = std::get_if<sim::Trouble>(&outcome);
+      ASSERT_TRUE(trouble) << manner.name;
+      EXPECT_EQ(trouble->body, "string");
+      EXPECT_NE(trouble->what.find("no length left"), std::string::npos) << trouble->what;
+      EXPECT_NEAR(trouble->time, when, 0.02) << manner.name;
+    }
   }
 }
 

@@ -12,7 +12,9 @@ using sim::Vec3;
 
 namespace {
 
-constexpr double kArc = 0.05;  // rad: of a rope on a wheel that is drawn as straight
+constexpr double kArc = 0.05;    // rad: of a rope on a wheel that is drawn as straight
+constexpr double kLoose = 1e-5;  // of a piece's length: more than this hangs loose
+constexpr int kSag = 20;         // pieces of what hangs
 
 }  // namespace
 
@@ -88,11 +90,48 @@ std::vector<Vec3> arc_on_wheel(const sim::SceneInfo& cast, std::size_t i, bool a
 
 }  // namespace
 
+std::vector<Vec3> hanging_rope(const Vec3& a, const Vec3& b, const Vec3& down, double length) {
+  const auto way = [&](double sag) {
+    std::vector<Vec3> points;
+    for (int i = 0; i <= kSag; ++i) {
+      const double u = double(i) / kSag;
+      points.push_back(a + u * (b - a) + 4 * sag * u * (1 - u) * down);
+    }
+    return points;
+  };
+  double low = 0, high = length;
+  for (int i = 0; i < 40; ++i) {
+    const double half = (low + high) / 2;
+    const std::vector<Vec3> points = way(half);
+    double its = 0;
+    for (int k = 0; k < kSag; ++k) its += (points[k + 1] - points[k]).norm();
+    (its < length ? low : high) = half;
+  }
+  return way(low);
+}
+
 std::vector<Vec3> rope_way(const sim::SceneInfo& cast, std::size_t i, const sim::Snapshot& now) {
   const sim::SceneInfo::Joint& joint = cast.joints[i];
   const std::vector<RopeLine> lines = rope_lines(joint, now);
+  const Vec3 down = cast.gravity.norm() > 0 ? Vec3(cast.gravity.normalized()) : Vec3(-Vec3::UnitY());
+  // the piece that what is loose hangs from
+  std::size_t loose = 0;
+  const auto across = [&](const RopeLine& line) {
+    const Vec3 far = line.to - line.from;
+    return (far - far.dot(down) * down).norm();
+  };
+  for (std::size_t k = 1; k < lines.size(); ++k)
+    if (across(lines[k]) > across(lines[loose]) * (1 + 1e-9)) loose = k;
   std::vector<Vec3> way;
-  for (const RopeLine& line : lines) way.push_back(line.from), way.push_back(line.to);
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const RopeLine& line = lines[k];
+    const double length = (line.to - line.from).norm(), slack = now.joints[i].slack;
+    if (k == loose && slack > kLoose * length) {
+      for (const Vec3& point : hanging_rope(line.from, line.to, down, length + slack)) way.push_back(point);
+      continue;
+    }
+    way.push_back(line.from), way.push_back(line.to);
+  }
   for (const bool at_a : {true, false}) {
     const std::vector<Vec3> arc = arc_on_wheel(cast, i, at_a, now);
     if (at_a)

@@ -18,8 +18,13 @@ struct RopeLine {
 /// ends.
 std::vector<RopeLine> rope_lines(const sim::SceneInfo::Joint& joint, const sim::Snapshot& now);
 
+/// A rope of this length from a to b, longer than the way: a parabola, m. `down`: a unit vector.
+std::vector<sim::Vec3> hanging_rope(const sim::Vec3& a, const sim::Vec3& b, const sim::Vec3& down,
+                                    double length);
+
 /// All of the rope of joint `i`, m: how it lies on the wheel where it begins, from where the joint before it
-/// ends, then its straight pieces.
+/// ends, then its straight pieces. What of it is loose hangs from the piece that goes farthest across
+/// gravity.
 std::vector<sim::Vec3> rope_way(const sim::SceneInfo& cast, std::size_t i, const sim::Snapshot& now);
 
 }  // namespace obscura::draw

@@ -18,7 +18,6 @@ using sim::Vec3;
 
 constexpr double kRise = 0.5;  // turns over which a coil leaves its axis
 constexpr int kNodes = 14;     // a turn
-constexpr int kSag = 20;       // pieces of a rope that sags
 constexpr double kEndOn = 7;   // amplitudes: a coil that looks shorter is narrower
 constexpr double kNarrow = 0.3;
 constexpr double kRail = 2.2;    // widths of a rod
@@ -80,27 +79,6 @@ void add_coil(SpaceFrame& s, const Coil& form, const Vec3& a, const Vec3& b, int
       {from, to, wide + wire, std::min(1.0, wound * wire / ((to - from).norm() * (wide + wire)))});
 }
 
-/// A rope of this length from a to b, longer than the way: a parabola.
-std::vector<Vec3> hanging(const Vec3& a, const Vec3& b, const Vec3& down, double rope) {
-  const auto way = [&](double sag) {
-    std::vector<Vec3> points;
-    for (int i = 0; i <= kSag; ++i) {
-      const double u = double(i) / kSag;
-      points.push_back(a + u * (b - a) + 4 * sag * u * (1 - u) * down);
-    }
-    return points;
-  };
-  double low = 0, high = rope;
-  for (int i = 0; i < 40; ++i) {
-    const double half = (low + high) / 2;
-    const std::vector<Vec3> points = way(half);
-    double length = 0;
-    for (int k = 0; k < kSag; ++k) length += (points[k + 1] - points[k]).norm();
-    (length < rope ? low : high) = half;
-  }
-  return way(low);
-}
-
 }  // namespace
 
 void add_links(SpaceFrame& s) {
@@ -131,13 +109,13 @@ void add_links(SpaceFrame& s) {
       case JointMark::teeth:
         break;
       case JointMark::pulley: {
-        std::vector<Vec3> way;
-        for (const sim::SceneInfo::Joint::Place& it : joint.places) way.push_back(place_of(s.now, it));
+        std::vector<Vec3> way = rope_way(cast, i, s.now);
+        way.erase(std::unique(way.begin(), way.end()), way.end());
         const double radius = 0.5 * kRope * weight * metre;
         add_tube(s, way, radius, color, number);
         for (std::size_t k = 1; k < way.size(); ++k) s.rods.push_back({way[k - 1], way[k], radius});
-        for (std::size_t k = 0; k < way.size(); ++k)
-          knob(joint.places[k].body, way[k], joint.places[k].body < 0 ? kPin : kJoint);
+        for (const sim::SceneInfo::Joint::Place& it : joint.places)
+          knob(it.body, place_of(s.now, it), it.body < 0 ? kPin : kJoint);
         break;
       }
       case JointMark::line:
@@ -147,7 +125,7 @@ void add_links(SpaceFrame& s) {
         const Vec3 down = cast.gravity.norm() > 0 ? Vec3(cast.gravity.normalized()) : Vec3(-Vec3::UnitY());
         const bool slack = rope && joint.length > (at.b - at.a).norm() * (1 + 1e-6);
         const std::vector<Vec3> way =
-            slack ? hanging(at.a, at.b, down, joint.length) : std::vector<Vec3>{at.a, at.b};
+            slack ? hanging_rope(at.a, at.b, down, joint.length) : std::vector<Vec3>{at.a, at.b};
         add_tube(s, way, radius, color, number);
         for (std::size_t k = 1; k < way.size(); ++k) s.rods.push_back({way[k - 1], way[k], radius});
         knob(joint.a, at.a, kJoint);

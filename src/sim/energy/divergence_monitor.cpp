@@ -153,7 +153,7 @@ std::optional<Trouble> DivergenceMonitor<D>::check_joints(const State<D>& state,
     });
     Row<D> J[kMostHeld<D>];
     double off[kMostHeld<D>];
-    const int n = rows(joint, side(joint.a.body), side(joint.b.body), turn, J, off, at_);
+    const int n = rows(joint, side(joint.a.body), side(joint.b.body), {turn, wound(state, i)}, J, off, at_);
     double size = joint.length;
     joint.each_body([&](int body) {
       if (body >= 0) size = std::max(size, bounding_radius(model_.bodies[std::size_t(body)].shape));

@@ -1,4 +1,7 @@
 #include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
 
 #include "sim/model/state.h"
 
@@ -92,6 +95,12 @@ std::vector<std::uint64_t> words(const State<D>& state) {
     w.integer(state.events.stopped);
   }
   for (const int piece : state.on_piece) w.integer(piece);
+  // the rest of it is said by the poses
+  for (std::size_t i = 0; i < state.wound.size(); ++i) {
+    const auto rounds = [](double angle) { return std::llround(angle / (2 * std::numbers::pi)); };
+    const std::int64_t a = rounds(state.wound[i].a), b = rounds(state.wound[i].b);
+    if (a != 0 || b != 0) w.integer(std::int64_t(i)), w.integer(a), w.integer(b);
+  }
   for (const char intact : state.intact) w.integer(intact);
   for (const PartPose<D>& pose : state.part_poses) {
     w.template numbers<D>(pose.x);

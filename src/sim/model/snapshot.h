@@ -138,6 +138,7 @@ struct Snapshot {
     };
     std::vector<Hold> holds{};  // of a mechanism: what it puts on each body, where it holds it
     bool broken = false;
+    double slack = 0;  // of a pulley: how much of its rope hangs loose, m
   };
   struct Contact {
     int body = -1, wall = -1;                          // wall: -1 where `other` is what it touches

@@ -109,6 +109,14 @@ struct EventLog {
 
 /// All that changes while the room runs, as a plain value: it copies, compares, and hashes. Time is
 /// step / rate, plus `beyond` in the copy that a frame between two steps shows.
+/// How far the rope of a pulley has turned at the wheels at its ends since the start, rad, all rounds
+/// counted.
+struct Wound {
+  double a = 0, b = 0;
+
+  bool operator==(const Wound&) const = default;
+};
+
 template <int D>
 struct State {
   std::int64_t step = 0;
@@ -129,6 +137,7 @@ struct State {
   std::vector<char> released;  // one a drive: whether its body has been let go
   EventLog events;             // of a model with conditions
   std::vector<int> on_piece;   // of a model with wires one a joint: the piece of the wire that its a is on
+  std::vector<Wound> wound;    // of a model with ropes on wheels one a joint
 
   // bonded bodies (sim/step/bonded_bodies.h): then all above describes the parts, and `bonded` is stepped
   std::vector<char> intact;             // one a bond: whether it is whole

@@ -43,6 +43,10 @@ void fields(Visit& visit, Happening& it) {
   visit(it.when), visit(it.which), visit(it.step), visit(it.fraction);
 }
 template <class Visit>
+void fields(Visit& visit, Wound& it) {
+  visit(it.a), visit(it.b);
+}
+template <class Visit>
 void fields(Visit& visit, EventLog& it) {
   visit(it.on), visit(it.done), visit(it.happenings), visit(it.changes), visit(it.stopped);
 }
@@ -60,7 +64,7 @@ void fields(Visit& visit, State<D>& it) {
   visit(it.intact), visit(it.part_poses), visit(it.bonded), visit(it.contacts), visit(it.frozen),
       visit(it.quiet);
   visit(it.broken), visit(it.joint_forces), visit(it.joint_torques), visit(it.work), visit(it.released);
-  visit(it.events), visit(it.on_piece);
+  visit(it.events), visit(it.on_piece), visit(it.wound);
 }
 
 template <class T>
@@ -164,18 +168,18 @@ bool fits(const State<D>& state, const Model<D>& model) {
   const auto body = [&](int i) { return i >= 0 && std::size_t(i) < bodies; };
   const auto wall = [&](int i) { return i >= 0 && std::size_t(i) < model.walls.size(); };
 
-  bool good = state.step >= 0 && state.step < kMostSteps && state.beyond == 0 && state.x.size() == bodies &&
-              state.v.size() == bodies && state.turn.size() == turning && state.spin.size() == turning &&
-              finite(state) && sized(state.body_spin, turning) && state.grips.size() == model.mice.size() &&
-              state.blasts.size() == model.explosions.size() &&
-              state.work.size() == std::size_t(model.books_work()) &&
-              state.released.size() == model.drives.size() &&
-              state.chain_states.size() == model.chains.size() && state.intact.size() == model.bonds.size() &&
-              state.bonded.size() == std::size_t(!model.bonds.empty()) &&
-              state.part_poses.size() == (model.bonds.empty() ? 0 : bodies) && sized(state.frozen, bodies) &&
-              state.quiet.size() == state.frozen.size() && sized(state.broken, joints) &&
-              sized(state.on_piece, joints) && state.joint_forces.size() == state.broken.size() &&
-              state.joint_torques.size() == state.broken.size();
+  bool good =
+      state.step >= 0 && state.step < kMostSteps && state.beyond == 0 && state.x.size() == bodies &&
+      state.v.size() == bodies && state.turn.size() == turning && state.spin.size() == turning &&
+      finite(state) && sized(state.body_spin, turning) && state.grips.size() == model.mice.size() &&
+      state.blasts.size() == model.explosions.size() &&
+      state.work.size() == std::size_t(model.books_work()) && state.released.size() == model.drives.size() &&
+      state.chain_states.size() == model.chains.size() && state.intact.size() == model.bonds.size() &&
+      state.bonded.size() == std::size_t(!model.bonds.empty()) &&
+      state.part_poses.size() == (model.bonds.empty() ? 0 : bodies) && sized(state.frozen, bodies) &&
+      state.quiet.size() == state.frozen.size() && sized(state.broken, joints) &&
+      sized(state.on_piece, joints) && sized(state.wound, joints) &&
+      state.joint_forces.size() == state.broken.size() && state.joint_torques.size() == state.broken.size();
   std::size_t things = 0;
   for (const When<D>& when : model.whens) things += std::size_t(when.things());
   const EventLog& events = state.events;
@@ -200,6 +204,7 @@ bool fits(const State<D>& state, const Model<D>& model) {
     const auto& curve = model.joints[i].curve;
     good = state.on_piece[i] >= 0 && state.on_piece[i] <= (curve ? curve->size() : 0);
   }
+  for (const Wound& it : state.wound) good = good && std::isfinite(it.a) && std::isfinite(it.b);
   for (const Contact<D>& contact : state.contacts) {
     good = good && body(contact.key.a) && (body(contact.key.b) || wall(-1 - contact.key.b)) &&
            contact.touching <= ContactMode::slide;

@@ -169,7 +169,8 @@ void hold(const Model<D>& model, const State<D>& state, Snapshot& now) {
       const int k = body < 0 ? -1 : turning(state, body);
       return k < 0 ? AngularVec<D>(AngularVec<D>::Zero()) : AngularVec<D>(rounds<D>(state.turn[k]));
     });
-    rows(joint, at(joint.a.body), at(joint.b.body), turn, row, error, motions);
+    rows(joint, at(joint.a.body), at(joint.b.body), {turn, wound(state, i)}, row, error, motions);
+    if (one_sided(joint)) now.joints[i].slack = std::max(0.0, error[0]);
     const Wrench<D> unit = load_on_a(joint, row[0], at(joint.a.body), at(joint.b.body));
     const double size = unit.f.squaredNorm() + unit.n.squaredNorm();
     if (!(size > 0)) continue;

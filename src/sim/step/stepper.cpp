@@ -57,6 +57,7 @@ Stepper<D>::Stepper(const Model<D>& model)
       forces_(model),
       forced_flight_(model, forces_.flying()),
       springs_(!model.springs.empty() || !model.mice.empty() || !stability_warnings(model).empty()) {
+  wound_ropes_ = D == 2 && has_wound_ropes(model);
   for (const Joint<D>& joint : model.joints) springs_ = springs_ || joint.coil.has_value();
   // so do bodies that are moved, and a potential that changes with the time
   for (const Body<D>& body : model.bodies) springs_ = springs_ && !body.carries();
@@ -136,6 +137,7 @@ void Stepper<D>::begin(State<D>& state) {
     state.broken.resize(model_.joints.size());
     state.joint_forces.resize(model_.joints.size(), Vec<D>::Zero());
     state.joint_torques.resize(model_.joints.size(), AngularVec<D>::Zero());
+    if (wound_ropes_) state.wound.resize(model_.joints.size());
   }
   follow(model_, state);
   state.touches.reserve(2 * model_.bodies.size() + 16);
@@ -253,6 +255,7 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
       suspects_.clear();
       for (const int body : by_handout_) handout_.look(state, body, 1, suspects_);
       handout_.collide(state, suspects_, ended);
+      if (auto trouble = follow_wound_ropes(state, ended)) return trouble;
     } else {
       suspects_.clear();
       const bool sound = integrate(state, begun, (to - from) * h);
@@ -275,6 +278,17 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
   if (contact_ && state.step % watch_every_ == 0)
     return divergence_.check_joints(state, time({state.step, 0}, model_.rate));
   return {};
+}
+
+// ropes on wheels, to where they are now
+template <int D>
+std::optional<Trouble> Stepper<D>::follow_wound_ropes(State<D>& state, double t) const {
+  if (!wound_ropes_) return {};
+  const std::optional<int> ended = follow_ropes(model_, state);
+  if (!ended) return {};
+  return Trouble{t, model_.joints[std::size_t(*ended)].name, "straight piece",
+                 "has no length left: its end comes to the rim of the wheel",
+                 "the rope is wound up: end the run before, or release it by a condition"};
 }
 
 template <int D>

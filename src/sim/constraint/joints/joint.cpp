@@ -14,6 +14,7 @@
 #include "sim/constraint/joints/slider.h"
 #include "sim/constraint/joints/weld.h"
 #include "sim/constraint/joints/wire.h"
+#include "sim/model/script.h"
 
 namespace obscura::sim {
 
@@ -30,20 +31,21 @@ const JointEquations<D>& equations(JointKind kind) {
 }
 
 template <int D>
-int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b, const AngularVec<D>& turn,
-         Row<D>* out, double* off, std::type_identity_t<std::span<const BodyMotion<D>>> all) {
+int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
+         const std::type_identity_t<JointTurn<D>>& turn, Row<D>* out, double* off,
+         std::type_identity_t<std::span<const BodyMotion<D>>> all) {
   const JointEquations<D>& its = equations<D>(joint.kind);
-  its.hold({joint, a, b, turn, all}, out, off);
+  its.hold({joint, a, b, turn.between, all, turn.wound}, out, off);
   for (int i = 0; i < its.rows && !its.mechanism; ++i) out[i].a = joint.a.body, out[i].b = joint.b.body;
   return its.rows;
 }
 
 template <int D>
 bool free_row(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
-              const AngularVec<D>& turn, Row<D>& out, double& way) {
+              const std::type_identity_t<JointTurn<D>>& turn, Row<D>& out, double& way) {
   const JointEquations<D>& its = equations<D>(joint.kind);
   if (!its.coordinate) return false;
-  way = its.coordinate({joint, a, b, turn}, out);
+  way = its.coordinate({joint, a, b, turn.between}, out);
   out.a = joint.a.body, out.b = joint.b.body;
   return true;
 }
@@ -64,7 +66,7 @@ Wrench<D> load_on_a(const Joint<D>& joint, const Row<D>& row, const BodyMotion<D
 
 template <int D>
 Wrench<D> coil_load(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
-                    const AngularVec<D>& turn) {
+                    const std::type_identity_t<JointTurn<D>>& turn) {
   if (!joint.coil) return {};
   Row<D> row;
   double c = 0;
@@ -74,21 +76,51 @@ Wrench<D> coil_load(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMot
   return load_on_a(joint, row, a, b) * joint.coil->force(c, rate);
 }
 
+template <int D>
+std::optional<int> follow_ropes(const Model<D>& model, State<D>& state) {
+  std::optional<int> ended;
+  if constexpr (D == 2) {
+    static const BodyMotion<D> room;
+    std::vector<BodyMotion<D>> all(model.bodies.size());
+    state.wound.resize(model.joints.size());
+    for (std::size_t i = 0; i < model.joints.size(); ++i) {
+      const Joint<D>& joint = model.joints[i];
+      if (joint.kind != JointKind::pulley || (i < state.broken.size() && state.broken[i])) continue;
+      if (joint.on_a.offset == 0 && joint.on_b.offset == 0) continue;
+      joint.each_body([&](int body) {
+        if (body >= 0) all[std::size_t(body)] = body_motion(state, body);
+      });
+      const AngularVec<D> turn = AngularVec<D>::Zero();
+      Wound& wound = state.wound[i];
+      const auto side = [&](int body) { return body < 0 ? room : all[std::size_t(body)]; };
+      const BodyMotion<D> a = side(joint.a.body), b = side(joint.b.body);
+      const auto now = on_wheels({joint, a, b, turn, all, wound}, step_length(model.rate));
+      if (now)
+        wound = *now;
+      else if (!ended)
+        ended = int(i);
+    }
+  }
+  return ended;
+}
+
 template const JointEquations<2>& equations<2>(JointKind);
-template int rows<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const AngularVec<2>&,
+template int rows<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const JointTurn<2>&,
                      Row<2>*, double*, std::span<const BodyMotion<2>>);
-template bool free_row<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const AngularVec<2>&,
+template bool free_row<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const JointTurn<2>&,
                           Row<2>&, double&);
 template Wrench<2> load_on_a<2>(const Joint<2>&, const Row<2>&, const BodyMotion<2>&, const BodyMotion<2>&);
 template Wrench<2> coil_load<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&,
-                                const AngularVec<2>&);
+                                const JointTurn<2>&);
+template std::optional<int> follow_ropes<2>(const Model<2>&, State<2>&);
 template const JointEquations<3>& equations<3>(JointKind);
-template int rows<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const AngularVec<3>&,
+template int rows<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const JointTurn<3>&,
                      Row<3>*, double*, std::span<const BodyMotion<3>>);
-template bool free_row<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const AngularVec<3>&,
+template bool free_row<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const JointTurn<3>&,
                           Row<3>&, double&);
 template Wrench<3> load_on_a<3>(const Joint<3>&, const Row<3>&, const BodyMotion<3>&, const BodyMotion<3>&);
 template Wrench<3> coil_load<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&,
-                                const AngularVec<3>&);
+                                const JointTurn<3>&);
+template std::optional<int> follow_ropes<3>(const Model<3>&, State<3>&);
 
 }  // namespace obscura::sim

@@ -12,14 +12,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
 
 #include "sim/constraint/row.h"
 #include "sim/math/spatial.h"
+#include "sim/model/state.h"
 
 namespace obscura::sim {
+
+/// How a joint is turned, as far as poses do not tell.
+template <int D>
+struct JointTurn {
+  AngularVec<D> between = AngularVec<D>::Zero();  // Joint::turn_between(). Of a wire see wire.h
+  Wound wound;                                    // of a pulley, as State::wound
+
+  template <class Turn>
+  JointTurn(const Eigen::MatrixBase<Turn>& turn, const Wound& of = {}) : between(turn), wound(of) {}
+};
 
 /// A joint with the poses and velocities of its two sides. A side that is the room stands still.
 template <int D>
@@ -29,6 +41,7 @@ struct JointPose {
   const AngularVec<D>& turn;                // of a against b, rad; in space the poses tell it. Of a wire see
                                             // wire.h
   std::span<const BodyMotion<D>> all = {};  // of all bodies, by number: of a mechanism, which holds more
+  Wound wound = {};                         // a pulley: near which angles its rope is on its wheels
 
   /// Any of its bodies; below zero: the room.
   const BodyMotion<D>& side(int body) const {
@@ -77,8 +90,29 @@ bool has_wires(const Model<D>& model) {
 /// angle of a relative to b (rad), for joints that constrain it; in space the poses give it. `all`: pose and
 /// velocity of every body, by number, for mechanisms that hold more bodies than a and b.
 template <int D>
-int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b, const AngularVec<D>& turn,
-         Row<D>* out, double* off, std::type_identity_t<std::span<const BodyMotion<D>>> all = {});
+int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
+         const std::type_identity_t<JointTurn<D>>& turn, Row<D>* out, double* off,
+         std::type_identity_t<std::span<const BodyMotion<D>>> all = {});
+
+/// Whether a model has ropes on wheels.
+template <int D>
+bool has_wound_ropes(const Model<D>& model) {
+  return std::any_of(model.joints.begin(), model.joints.end(), [](const Joint<D>& joint) {
+    return joint.kind == JointKind::pulley && (joint.on_a.offset != 0 || joint.on_b.offset != 0);
+  });
+}
+
+/// Where the rope of a joint is on its wheels.
+template <int D>
+Wound wound(const State<D>& state, std::size_t joint) {
+  return joint < state.wound.size() ? state.wound[joint] : Wound{};
+}
+
+/// Follows State::wound to where ropes are now, at the end of a step: from where they were by less than half
+/// a round. Returns the first joint whose rope has no straight piece left, as its end is on the rim of a
+/// wheel.
+template <int D>
+std::optional<int> follow_ropes(const Model<D>& model, State<D>& state);
 
 /// What breaks with what is broken: all pulleys of one rope, and a gear with either of its joints.
 template <int D>
@@ -113,7 +147,7 @@ bool has_free_row(const Joint<D>& joint) {
 /// The row of that, for motors, limits and friction; and its value (rad or m). False where there is none.
 template <int D>
 bool free_row(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
-              const AngularVec<D>& turn, Row<D>& out, double& way);
+              const std::type_identity_t<JointTurn<D>>& turn, Row<D>& out, double& way);
 
 /// What a row of a joint puts on its a for a unit of its force: the force that is shown (N), and the torque
 /// about the place of that end (N m).
@@ -123,7 +157,7 @@ Wrench<D> load_on_a(const Joint<D>& joint, const Row<D>& row, const BodyMotion<D
 /// What the spring of a joint puts on its a, as load_on_a(); nothing where there is none.
 template <int D>
 Wrench<D> coil_load(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
-                    const AngularVec<D>& turn);
+                    const std::type_identity_t<JointTurn<D>>& turn);
 
 /// Whether it bears no such load: it breaks.
 template <int D>

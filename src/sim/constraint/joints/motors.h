@@ -54,7 +54,7 @@ class Motors {
       evaluation.run(1, {});
       return evaluation.output(6)[0];
     };
-    const double off = c - place(t);
+    const double off = -behind(joint, place(t) - c);
     return place(t + h) + off * elementary::exp(-kFollow * h);
   }
 

@@ -53,8 +53,9 @@ AngularVec<D> ExactSolver<D>::rounds_of(const State<D>& state, int body) const {
 }
 
 template <int D>
-AngularVec<D> ExactSolver<D>::turn_between(const State<D>& state, const Joint<D>& joint) const {
-  return joint.turn_between([&](int body) { return rounds_of(state, body); });
+JointTurn<D> ExactSolver<D>::turn_between(const State<D>& state, const Joint<D>& joint) const {
+  return {joint.turn_between([&](int body) { return rounds_of(state, body); }),
+          wound(state, std::size_t(&joint - model_.joints.data()))};
 }
 
 // what bodies that are moved, and belts, give by a unit of force along a row, W; of impulse, J
@@ -81,7 +82,7 @@ typename Motors<D>::Aim ExactSolver<D>::aim(const Constraint& constraint) {
 
 // the rows of what is held, at the stances at hand
 template <int D>
-void ExactSolver<D>::build_jacobian(Constraint& constraint, const AngularVec<D>& between) {
+void ExactSolver<D>::build_jacobian(Constraint& constraint, const JointTurn<D>& between) {
   static const BodyMotion<D> room;
   constraint.first = int(rows_.size());
   const auto at = [&](int body) -> const BodyMotion<D>& { return body < 0 ? room : poses_[body]; };
@@ -95,7 +96,7 @@ void ExactSolver<D>::build_jacobian(Constraint& constraint, const AngularVec<D>&
   } else {
     const Joint<D>& joint = model_.joints[constraint.of];
     const BodyMotion<D>&a = at(joint.a.body), &b = at(joint.b.body);
-    const AngularVec<D> turn = joint.kind == JointKind::wire ? wire_pose(constraint.of) : between;
+    const JointTurn<D> turn = joint.kind == JointKind::wire ? wire_pose(constraint.of) : between;
     if (constraint.kind == Constraint::Kind::joint || constraint.kind == Constraint::Kind::rope) {
       constraint.rows = sim::rows(joint, a, b, turn, out, constraint.offs, poses_);
       constraint.off = constraint.offs[0];
@@ -125,7 +126,7 @@ template <int D>
 void ExactSolver<D>::collect_constraints(const State<D>& state, bool all) {
   using Kind = typename Constraint::Kind;
   constraints_.clear(), rows_.clear();
-  const auto add = [&](Kind kind, int of, const AngularVec<D>& turn, bool one_sided) {
+  const auto add = [&](Kind kind, int of, const JointTurn<D>& turn, bool one_sided) {
     Constraint constraint{};
     constraint.kind = kind, constraint.of = of;
     build_jacobian(constraint, turn);
@@ -139,7 +140,7 @@ void ExactSolver<D>::collect_constraints(const State<D>& state, bool all) {
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
     if (state.broken[i] || !moves(joint)) continue;
-    const AngularVec<D> turn = turn_between(state, joint);
+    const JointTurn<D> turn = turn_between(state, joint);
     if (!joint.linked) add(one_sided(joint) ? Kind::rope : Kind::joint, i, turn, one_sided(joint));
     if (!has_free_row(joint)) continue;
     if (joint.lower > -1e299) add(Kind::lower, i, turn, true);

@@ -390,8 +390,8 @@ double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& whic
 
 // the turn between the sides of a joint a part of the way
 template <int D>
-AngularVec<D> ExactSolver<D>::turn_between_at(const State<D>& state, const Joint<D>& joint, double h,
-                                              double part) {
+JointTurn<D> ExactSolver<D>::turn_between_at(const State<D>& state, const Joint<D>& joint, double h,
+                                             double part) {
   const auto at = [&](int body) -> AngularVec<D> {
     const int k = body < 0 ? -1 : turning(state, body);
     if (k < 0) return AngularVec<D>::Zero();
@@ -400,7 +400,7 @@ AngularVec<D> ExactSolver<D>::turn_between_at(const State<D>& state, const Joint
     return rounds<D>(sim::between<D>(interval_.begun.turn[k], interval_.begun.spin[k], state.turn[k],
                                      state.spin[k], h, part));
   };
-  return joint.turn_between(at);
+  return {joint.turn_between(at), wound(state, std::size_t(&joint - model_.joints.data()))};
 }
 
 // ropes that become tight and limits that are met

@@ -257,9 +257,9 @@ class ExactSolver final : public ContactSolver<D>, private System {
   AngularVec<D> rounds_of(const State<D>& state, int body) const;
   double given(int row) const;
   double motor_power() const;
-  AngularVec<D> turn_between(const State<D>& state, const Joint<D>& joint) const;
+  JointTurn<D> turn_between(const State<D>& state, const Joint<D>& joint) const;
   void collect_constraints(const State<D>& state, bool all);
-  void build_jacobian(Constraint& constraint, const AngularVec<D>& turn);
+  void build_jacobian(Constraint& constraint, const JointTurn<D>& turn);
   void build_blocks(bool impulses);
   bool solve_modes(State<D>& state, double t);
   double loads() const;
@@ -328,7 +328,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   double breaking_time(const State<D>& state, Couple& which) const;
   double travel(const State<D>& state, int body, double h) const;
   bool may_close(const State<D>& state, double h, Couple couple) const;
-  AngularVec<D> turn_between_at(const State<D>& state, const Joint<D>& joint, double h, double part);
+  JointTurn<D> turn_between_at(const State<D>& state, const Joint<D>& joint, double h, double part);
   void find_contacts(const State<D>& state, double margin);
   double gap_of(const ContactKey& key, double otherwise);
   template <class Found>

@@ -63,6 +63,7 @@ void JointSolver<D>::prepare(State<D>& state) const {
 
 template <int D>
 void JointSolver<D>::gather(const State<D>& state) {
+  wound_ = state.wound;
   if (planned_ && broken_ == state.broken && frozen_ == state.frozen) return;
   planned_ = true, broken_ = state.broken, frozen_ = state.frozen;
   for (int i = 0; i < int(model_.bodies.size()); ++i)
@@ -143,10 +144,12 @@ void JointSolver<D>::plan() {
 }
 
 template <int D>
-AngularVec<D> JointSolver<D>::turn_between(const Joint<D>& joint) const {
-  return joint.turn_between([&](int body) {
+JointTurn<D> JointSolver<D>::turn_between(const Joint<D>& joint) const {
+  const AngularVec<D> turn = joint.turn_between([&](int body) {
     return body < 0 ? AngularVec<D>(AngularVec<D>::Zero()) : AngularVec<D>(rounds<D>(turn_[body]));
   });
+  const auto number = std::size_t(&joint - model_.joints.data());
+  return {turn, number < wound_.size() ? wound_[number] : Wound{}};
 }
 
 // M^-1 r p onto velocities

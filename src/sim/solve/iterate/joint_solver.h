@@ -195,7 +195,7 @@ class JointSolver final : public System {
   };
 
   void plan();
-  AngularVec<D> turn_between(const Joint<D>& joint) const;
+  JointTurn<D> turn_between(const Joint<D>& joint) const;
   // whether a joint holds anything that moves by forces
   bool moves(const Joint<D>& joint) const {
     return joint.any_body([&](int body) { return response_.moves(body); });
@@ -290,6 +290,7 @@ class JointSolver final : public System {
   Response<D> response_;
 
   std::vector<char> broken_, frozen_;  // of the state, when plan() ran
+  std::vector<Wound> wound_;           // as State::wound
   bool planned_ = false;
   std::vector<int> held_;            // joints: the blocks. A row that is loose is empty
   std::vector<char> loose_;          // one a row: of ropes, limits, motors; all but in the free motion
