@@ -25,7 +25,7 @@ const JointEquations<D>& equations(JointKind kind) {
       std::to_array<JointEquations<D>>({kPin<D>, kWeld<D>, kSlider<D>, kRod<D>, kRope<D>, kHinge<D>,
                                         kPulley<D>, kGear<D>, kScrew<D>, kWire<D>});
   static_assert(in_order(kTable) && std::ranges::all_of(kTable, [](const auto& its) {
-                  return its.hold && its.rows <= kMostHeld<D>;
+                  return its.rows > 0 && its.rows <= kMostHeld<D>;
                 }));
   return kTable[std::size_t(kind)];
 }
