@@ -1,30 +1,13 @@
 // Formulas of the time that jump: the step is cut there, against closed forms.
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <numbers>
-#include <string>
-#include <variant>
 
-#include "scene/scene.h"
-#include "sim/step/run.h"
+#include "scene/text_run.h"
 
 namespace obscura::scene {
 namespace {
 
 constexpr double kAroundJump = 1e-10;  // m: 1e-9 of a step at 60 steps a second, times some m/s
-
-sim::Snapshot pushed_until(double t, const std::string& text) {
-  const auto run = parse(text, "a.toml").run();
-  auto found = run->at(*sim::from_double(t));
-  if (const auto* trouble = std::get_if<sim::Trouble>(&found)) {
-    ADD_FAILURE() << trouble->what << ": " << trouble->likely;
-    return {};
-  }
-  return std::get<sim::Snapshot>(found);
-}
 
 // a body of 1 kg at rest at x = 1 that nothing but `force` moves
 std::string pushed(bool space, const std::string& mode, int rate, const std::string& force) {
@@ -48,7 +31,7 @@ TEST(Jumps, APushEndsAtItsTime) {
         for (const double ends : {0.5037, 0.5, 7.0}) {
           const double to = std::min(ends, 2.0);
           const sim::Snapshot at =
-              pushed_until(2, pushed(space, mode, rate, fmt::format("if(t < {}, 3, 0)", ends)));
+              TextRun(pushed(space, mode, rate, fmt::format("if(t < {}, 3, 0)", ends))).at(2);
           EXPECT_NEAR(at.bodies[0].position.x(), 1 + 1.5 * to * to + 3 * to * (2 - to), kAroundJump)
               << mode << space << rate << " " << ends;
         }
@@ -62,7 +45,7 @@ TEST(Jumps, EachOfManyIsAtItsTime) {
   for (const char* mode : kJumpModes) {
     for (const int rate : {60, 600}) {
       const auto speed = [&](const char* force) {
-        return pushed_until(2, pushed(false, mode, rate, force)).bodies[0].velocity.x();
+        return TextRun(pushed(false, mode, rate, force)).at(2).bodies[0].velocity.x();
       };
       EXPECT_NEAR(speed("floor(3*t)"), 15.0 / 3, kAroundJump) << mode << rate;
       // the scheme's own order is left: 4, of the midpoint 2
@@ -82,18 +65,20 @@ TEST(Jumps, MotorsAndMotionsHaveThem) {
         "[physics]\nrate = {}\n[room]\nsize = [8, 8]\nwalls = \"none\"\ngravity = [0, 0]\n", rate);
     // 5 N until the motor has its speed, which changes in the midst of that
     const sim::Snapshot driven =
-        pushed_until(1, room +
-                            "[[box]]\nname = \"b\"\nsize = [0.2, 0.2]\nposition = [1, 1]\nmass = 1\n"
-                            "[[joint]]\ntype = \"slider\"\nbetween = [\"b\", \"room\"]\naxis = [1, 0]\n"
-                            "motor = { speed = \"if(t < 0.2037, 9, -9)\", most = 5 }\n");
+        TextRun(room +
+                "[[box]]\nname = \"b\"\nsize = [0.2, 0.2]\nposition = [1, 1]\nmass = 1\n"
+                "[[joint]]\ntype = \"slider\"\nbetween = [\"b\", \"room\"]\naxis = [1, 0]\n"
+                "motor = { speed = \"if(t < 0.2037, 9, -9)\", most = 5 }\n")
+            .at(1);
     const double v = 5 * 0.2037;
     EXPECT_NEAR(driven.bodies[0].velocity.x(), v - 5 * (1 - 0.2037), 1e-8) << rate;
-    const sim::Snapshot pulled = pushed_until(
-        1, room +
-               "[[particle]]\nname = \"hand\"\nposition = [2, 1]\nmotion = { x = \"if(t < 0.2037, t, "
-               "0.2037)\" }\n"
-               "[[particle]]\nname = \"b\"\nposition = [1, 1]\nmass = 1\n"
-               "[[spring]]\nbetween = [\"b\", \"hand\"]\nstiffness = 9\nrest_length = 1\n");
+    const sim::Snapshot pulled =
+        TextRun(room +
+                "[[particle]]\nname = \"hand\"\nposition = [2, 1]\nmotion = { x = \"if(t < 0.2037, t, "
+                "0.2037)\" }\n"
+                "[[particle]]\nname = \"b\"\nposition = [1, 1]\nmass = 1\n"
+                "[[spring]]\nbetween = [\"b\", \"hand\"]\nstiffness = 9\nrest_length = 1\n")
+            .at(1);
     // x'' = 9 (s - x): x = t - sin(3 t)/3 until then, and swings about where the hand stands after
     const double s = 0.2037, x = s - std::sin(3 * s) / 3, u = 1 - std::cos(3 * s), t = 1 - s;
     EXPECT_NEAR(pulled.bodies[1].position.x(), 1 + s + (x - s) * std::cos(3 * t) + u / 3 * std::sin(3 * t),

@@ -1,15 +1,7 @@
 // Under `event` a slip begins, turns and ends at its own time, however many contacts share a load: scenes
 // against closed forms, at few steps a second and many.
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-#include <variant>
-
-#include "scene/scene.h"
-#include "sim/step/run.h"
+#include "scene/text_run.h"
 
 namespace obscura::scene {
 namespace {
@@ -18,16 +10,10 @@ constexpr double kRounding = 1e-12;  // m, of some metres and 600 steps
 
 // bodies of a room after some time, g = 10 m/s^2
 sim::Snapshot slid_until(double t, bool space, int rate, const std::string& bodies) {
-  const std::string text =
+  const std::string room =
       fmt::format("[physics]\ncollision = \"event\"\nrate = {}\n[room]\nsize = {}\ngravity = {}\n", rate,
                   space ? "[40, 8, 40]" : "[40, 8]", space ? "[0, -10, 0]" : "[0, -10]");
-  const auto run = parse(text + bodies, "a.toml").run();
-  auto found = run->at(*sim::from_double(t));
-  if (const auto* trouble = std::get_if<sim::Trouble>(&found)) {
-    ADD_FAILURE() << trouble->what << ": " << trouble->likely;
-    return {};
-  }
-  return std::get<sim::Snapshot>(found);
+  return TextRun(room + bodies).at(t);
 }
 
 // A force along x that is 5 N at t0 and grows by 2 N a second, against friction of at most 5 N on 1 kg:

@@ -100,22 +100,7 @@ Landed landing_by_newton(const Fall& fall) {
   return out;
 }
 
-// where Newton's law would gain energy, with the largest e by which it does not
-Landed landing_of(const Fall& fall) {
-  Landed landing = landing_by_newton(fall);
-  if (!landing.gains) return landing;
-  double low = 0, high = fall.e;
-  for (int i = 0; i < 60; ++i) {
-    Fall with = fall;
-    with.e = 0.5 * (low + high);
-    (landing_by_newton(with).gains ? high : low) = with.e;
-  }
-  Fall with = fall;
-  with.e = low;
-  landing = landing_by_newton(with);
-  landing.gains = true;
-  return landing;
-}
+Landed landing_of(const Fall& fall) { return without_gain(fall, landing_by_newton); }
 
 bool free_after(const Fall& fall, const Landed& landed, double time) {
   Fall then = fall;

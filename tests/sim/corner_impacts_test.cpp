@@ -89,22 +89,7 @@ Landing landing_by_newton(const Drop& drop) {
   return out;
 }
 
-// where Newton's law would gain energy, with the largest e by which it does not
-Landing landing_of(const Drop& drop) {
-  Landing landing = landing_by_newton(drop);
-  if (!landing.gains) return landing;
-  double low = 0, high = drop.e;
-  for (int i = 0; i < 60; ++i) {
-    Drop with = drop;
-    with.e = 0.5 * (low + high);
-    (landing_by_newton(with).gains ? high : low) = with.e;
-  }
-  Drop with = drop;
-  with.e = low;
-  landing = landing_by_newton(with);
-  landing.gains = true;
-  return landing;
-}
+Landing landing_of(const Drop& drop) { return without_gain(drop, landing_by_newton); }
 
 // whether nothing touches the floor in the time after a landing
 bool free_after(const Drop& drop, const Landing& landing, double time) {

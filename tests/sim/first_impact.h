@@ -33,4 +33,20 @@ std::pair<Met<D>, int> first_impact(const World<D>& world, double after) {
   return {met, impacts};
 }
 
+/// How a body lands, by landing_of(drop) with Newton's law; where that would gain energy, with the largest e
+/// by which it does not.
+template <class Drop, class Landing>
+Landing without_gain(const Drop& drop, Landing (*landing_of)(const Drop&)) {
+  const Landing landing = landing_of(drop);
+  if (!landing.gains) return landing;
+  double low = 0, high = drop.e;
+  Drop with = drop;
+  for (int i = 0; i < 60; ++i) {
+    with.e = 0.5 * (low + high);
+    (landing_of(with).gains ? high : low) = with.e;
+  }
+  with.e = low;
+  return landing_of(with);
+}
+
 }  // namespace obscura::sim

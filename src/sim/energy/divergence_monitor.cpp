@@ -49,7 +49,10 @@ std::string fate(const Eigen::Matrix<double, D, 1>& numbers, const char* limit) 
 
 template <int D>
 DivergenceMonitor<D>::DivergenceMonitor(const Model<D>& model, const std::vector<Path<D>>& paths)
-    : model_(model), paths_(paths), too_long_(stability_warnings(model)) {}
+    : model_(model), paths_(paths), too_long_(stability_warnings(model)) {
+  for (std::size_t i = 0; D == 3 && i < model.joints.size(); ++i)
+    if (model.joints[i].coil && model.joints[i].kind == JointKind::hinge) coils_.push_back(int(i));
+}
 
 template <int D>
 std::optional<Trouble> DivergenceMonitor<D>::check_bounds(const State<D>& state, double t) const {
@@ -181,17 +184,13 @@ std::optional<Trouble> DivergenceMonitor<D>::check_joints(const State<D>& state,
 template <int D>
 void DivergenceMonitor<D>::spring_angles(const State<D>& state, std::vector<double>& angles) const {
   angles.clear();
-  if (D == 2) return;
   const auto motion = [&](int body) { return body < 0 ? BodyMotion<D>{} : body_motion(state, body); };
-  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
-    const Joint<D>& joint = model_.joints[i];
-    if (!joint.coil || joint.kind != JointKind::hinge) continue;
+  for (const int i : coils_) {
+    const Joint<D>& joint = model_.joints[std::size_t(i)];
     Row<D> row;
     double angle = 0;
-    const bool whole = i >= state.broken.size() || !state.broken[i];
-    if (whole)
-      free_row(joint, motion(joint.a.body), motion(joint.b.body), AngularVec<D>(AngularVec<D>::Zero()), row,
-               angle);
+    if (std::size_t(i) >= state.broken.size() || !state.broken[std::size_t(i)])
+      free_row(joint, motion(joint.a.body), motion(joint.b.body), AngularVec<D>::Zero(), row, angle);
     angles.push_back(angle);
   }
 }
@@ -199,17 +198,14 @@ void DivergenceMonitor<D>::spring_angles(const State<D>& state, std::vector<doub
 template <int D>
 std::optional<Trouble> DivergenceMonitor<D>::check_turns(const std::vector<double>& before,
                                                          const State<D>& state, double t) const {
-  if (before.empty()) return {};
+  if (coils_.empty()) return {};
   std::vector<double> now;
   spring_angles(state, now);
-  std::size_t k = 0;
-  for (const Joint<D>& joint : model_.joints) {
-    if (!joint.coil || joint.kind != JointKind::hinge) continue;
-    if (std::fabs(now[k] - before[k]) > std::numbers::pi && now[k] != 0)
-      return Trouble{t, joint.name, "angle", "has come to half a turn",
+  for (std::size_t k = 0; k < coils_.size(); ++k) {
+    if (std::fabs(now[k] - before[k]) > std::numbers::pi)
+      return Trouble{t, model_.joints[std::size_t(coils_[k])].name, "angle", "has come to half a turn",
                      "the spring of a hinge in space counts no whole turns: make it stiffer, give the hinge "
                      "limits, or build it in the plane, where pins count them"};
-    ++k;
   }
   return {};
 }

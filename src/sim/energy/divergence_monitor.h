@@ -29,10 +29,11 @@ class DivergenceMonitor {
   /// so.
   std::optional<Trouble> check_energy(const State<D>& state, double t) const;
 
-  /// The angles of hinges with springs in space, which count no whole turns, rad; none in the plane.
+  /// The angles of hinges with springs in space, which count no whole turns, rad, from -pi to pi; 0 of those
+  /// that broke. None in the plane.
   void spring_angles(const State<D>& state, std::vector<double>& angles) const;
-  /// What such a spring does that has turned beyond half a turn, where `before` are its angles shortly
-  /// before.
+  /// The first of them whose angle has come beyond half a turn, and so to the other end of its range, since
+  /// it was as in `before`, less than a step ago.
   std::optional<Trouble> check_turns(const std::vector<double>& before, const State<D>& state,
                                      double t) const;
   /// The first unbroken joint whose equations are off by more than a hundredth of its size, or of a radian.
@@ -43,6 +44,7 @@ class DivergenceMonitor {
 
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
+  std::vector<int> coils_;                 // joints: hinges with springs in space
   std::vector<Trouble> too_long_;          // what the step is too long for, from the start
   mutable std::vector<BodyMotion<D>> at_;  // of check_joints()
 };

@@ -91,8 +91,8 @@ class Program {
   /// How many slots its evaluation is given: one more than the highest variable.
   int slots() const { return slots_; }
   bool reads(int slot) const;
-  /// What in it goes by steps with a variable that is the same for all bodies, and with no other: comparisons,
-  /// signs and floors, one output each.
+  /// A program of all that in this one changes by jumps with the variable in `slot`, the same for all bodies,
+  /// and hangs on no other: an output for each comparison, sign and floor. Evaluation::begin() suffices.
   Program jumps(int slot) const;
 
  private:

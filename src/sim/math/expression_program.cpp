@@ -58,8 +58,7 @@ Program::Program(const ExpressionGraph& graph, std::span<const int> outputs) {
     for (int k = 0; k < count; ++k) {
       if (std::find(all.begin(), all.begin() + k, all[std::size_t(k)]) != all.begin() + k) continue;
       const ExpressionGraph::Node& read = graph[all[std::size_t(k)]];
-      if (last[std::size_t(all[std::size_t(k)])] == i && !read.uniform &&
-          read.operation != Operation::variable)
+      if (last[std::size_t(all[std::size_t(k)])] == i && !read.uniform && read.operation != Operation::variable)
         free.push_back(place[std::size_t(all[k])]);
     }
   }

@@ -107,8 +107,6 @@ struct EventLog {
   bool operator==(const EventLog&) const = default;
 };
 
-/// All that changes while the room runs, as a plain value: it copies, compares, and hashes. Time is
-/// step / rate, plus `beyond` in the copy that a frame between two steps shows.
 /// How far the rope of a pulley has turned at the wheels at its ends since the start, rad, all rounds
 /// counted.
 struct Wound {
@@ -117,6 +115,8 @@ struct Wound {
   bool operator==(const Wound&) const = default;
 };
 
+/// All that changes while the room runs, as a plain value: it copies, compares, and hashes. Time is
+/// step / rate, plus `beyond` in the copy that a frame between two steps shows.
 template <int D>
 struct State {
   std::int64_t step = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cmath>
+#include "sim/math/false_position.h"
 
 namespace obscura::sim {
 
@@ -14,27 +14,19 @@ double restitution_share(double most, Gain&& gain) {
   constexpr double kEnough = 1e-10;  // of the size: what may be lost too much
   constexpr double kNear = 1e-12;    // of e
   constexpr int kTries = 60;
-  double at_high = gain(most);
+  const double at_high = gain(most);
   if (!(at_high > 0) || most == 0) return most;
-  double low = 0, high = most, at_low = gain(0.0), last = 0;
-  if (!(at_low < 0)) return 0;
-  // regula falsi, Illinois; by halves where nothing was found
-  int side = 0;
-  for (int n = 0; n < kTries && high - low > kNear && at_low < -kEnough; ++n) {
-    double share = std::isfinite(at_high) ? (low * at_high - high * at_low) / (at_high - at_low) : high;
-    if (!(share > low && share < high)) share = 0.5 * (low + high);
-    const double value = gain(share);
-    last = share;
-    if (value > 0) {
-      if (side > 0) at_low *= 0.5;
-      high = share, at_high = value, side = 1;
-    } else {
-      if (side < 0) at_high *= 0.5;
-      low = share, at_low = value, side = -1;
-    }
+  double gained = gain(0.0), last = 0;
+  if (!(gained < 0)) return 0;
+  FalsePosition root(0, gained, most, at_high);
+  for (int n = 0; n < kTries && root.high() - root.low() > kNear && gained < -kEnough; ++n) {
+    last = root.next();
+    const double value = gain(last);
+    root.put(last, value);
+    if (!(value > 0)) gained = value;
   }
-  if (last != low) gain(low);
-  return low;
+  if (last != root.low()) gain(root.low());
+  return root.low();
 }
 
 }  // namespace obscura::sim

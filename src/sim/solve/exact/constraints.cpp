@@ -15,7 +15,6 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kMostRubRounds = 50;   // of friction on wires
 constexpr double kLeastPart = 1e-3;  // of the way back to where joints belong
 constexpr double kJam = 100;  // times what all bodies weigh and are pulled by: a stack's floor bears it once
 
@@ -284,6 +283,17 @@ void ExactSolver<D>::warm_start_rows(double h) {
   }
 }
 
+// forces and modes under the laws of the blocks, where the bodies have accelerations `rate` without them
+template <int D>
+bool ExactSolver<D>::solve_laws(std::span<const double> rate) {
+  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_acceleration(i, rate) + rows_[i].velocity_product;
+  for (const Constraint& constraint : constraints_) b_[constraint.first] -= aim(constraint).rate;
+  warm_start_rows(1);
+  bool found = solve();
+  for (int i = 0; i < kMostRubs && rub_wires(); ++i) found = solve();
+  return found;
+}
+
 // the forces of this instant, and what each contact does. False where there are none.
 template <int D>
 bool ExactSolver<D>::solve_modes(State<D>& state, double t) {
@@ -293,12 +303,7 @@ bool ExactSolver<D>::solve_modes(State<D>& state, double t) {
   if (constraints_.empty()) return true;
   find_islands();
   b_.resize(Eigen::Index(rows_.size()));
-  const auto rate = dynamics_.accelerations(state, t);
-  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_acceleration(i, rate) + rows_[i].velocity_product;
-  for (const Constraint& constraint : constraints_) b_[constraint.first] -= aim(constraint).rate;
-  warm_start_rows(1);
-  bool found = solve();
-  for (int i = 0; i < kMostRubRounds && rub_wires(); ++i) found = solve();
+  const bool found = solve_laws(dynamics_.accelerations(state, t));
   // hold contacts that separate now, but that the forces without them would close again at once
   for (const Constraint& constraint : constraints_) {
     if (progress_.forced.empty() || constraint.kind != Constraint::Kind::contact) continue;

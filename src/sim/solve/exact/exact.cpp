@@ -29,7 +29,6 @@ constexpr int kStuck = 16;           // such cuts, one after another
 constexpr int kThorough = 32;        // steps: in each such one what is not found is looked for everywhere
 constexpr double kManyLooks = 3e5;   // at couples, before a step is
 constexpr int kMostRounds = 8;       // of stepping again what got farther than expected
-constexpr int kMostRubs = 50;        // rounds of friction on wires
 // of a step, by a body that meets walls alone: a bounce takes microseconds
 constexpr int kMostLoneCuts = 50000;
 

@@ -261,6 +261,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void collect_constraints(const State<D>& state, bool all);
   void build_jacobian(Constraint& constraint, const JointTurn<D>& turn);
   void build_blocks(bool impulses);
+  static constexpr int kMostRubs = 50;  // rounds of friction on wires
+  bool solve_laws(std::span<const double> rate);
   bool solve_modes(State<D>& state, double t);
   double loads() const;
   bool jammed() const;

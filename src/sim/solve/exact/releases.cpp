@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/math/false_position.h"
 #include "sim/solve/exact/exact.h"
 
 namespace obscura::sim {
@@ -22,7 +23,6 @@ constexpr int kMostSecants = 100;
 constexpr double kDoubt =
     1e-9;  // of the largest force: the laws are solved where it is beyond them by so much
 constexpr double kSoon = 1e-7;  // of the interval: how exactly is known where the laws let go
-constexpr int kRubsAtEnd = 50;  // rounds of friction on wires
 
 }  // namespace
 
@@ -100,8 +100,8 @@ const typename ExactSolver<D>::Constraint* ExactSolver<D>::bears_alone(const Con
 }
 
 // The length of the interval after which the reserve of a contact is used up: it is not yet after `low`, and
-// was before `high`. Where the lengths are far apart their geometric mean is tried, then regula falsi,
-// Illinois. Leaves the state at the end of some length.
+// was before `high`. Where the lengths are far apart their geometric mean is tried, then false
+// position. Leaves the state at the end of some length.
 template <int D>
 double ExactSolver<D>::release_length(State<D>& state, double t, const Constraint& which, double low,
                                       double high) {
@@ -112,22 +112,15 @@ double ExactSolver<D>::release_length(State<D>& state, double t, const Constrain
     const double reserve = all_finite(state) ? force_reserve(which, f_) : -1e300;
     return std::isfinite(reserve) ? reserve + slight : -1e300;
   };
-  double at_low = force_reserve(which, f_) + slight, at_high = reserve_after(high);
-  for (int i = 0; i < kMostSecants && high - low > 1e-15 * high; ++i) {
-    double length =
-        high > kFar * low ? std::sqrt(low * high) : (low * at_high - high * at_low) / (at_high - at_low);
-    if (!(length > low && length < high)) length = 0.5 * (low + high);
+  const double at_low = force_reserve(which, f_) + slight;
+  FalsePosition root(low, at_low, high, reserve_after(high));
+  for (int i = 0; i < kMostSecants && root.high() - root.low() > 1e-15 * root.high(); ++i) {
+    const double length = root.high() > kFar * root.low() ? std::sqrt(root.low() * root.high()) : root.next();
     const double value = reserve_after(length);
     if (std::abs(value) <= slight) return length;
-    if (value > 0) {
-      if (i > 0) at_high *= 0.5;
-      low = length, at_low = value;
-    } else {
-      if (i > 0) at_low *= 0.5;
-      high = length, at_high = value;
-    }
+    root.put(length, value);
   }
-  return high;
+  return root.high();
 }
 
 // What the laws, solved at the end of the interval, let go of that it held: the largest acceleration that
@@ -155,22 +148,14 @@ double ExactSolver<D>::let_go_at(State<D>& state, double t) {
     return 0;
 
   scratch_.blocks = blocks_, scratch_.modes = modes_, scratch_.f = f_;
-  update_poses(state), pose_driven(t);
-  rows_.clear();
-  for (Constraint& one : constraints_) {
-    build_jacobian(one, one.kind == Kind::contact ? AngularVec<D>::Zero().eval()
-                                                  : turn_between(state, model_.joints[one.of]));
+  build_rows(state, t);
+  for (const Constraint& one : constraints_)
     if (one.kind == Kind::contact && blocks_[one.block].sliding)
       blocks_[one.block].direction = interval_.modes[std::size_t(one.block)].along;
-  }
   chain_response_.build(rows_, response_, dynamics_.chains());
   modes_.assign(blocks_.size(), {});
   const auto rate = dynamics_.accelerations(state, t);
-  for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_acceleration(i, rate) + rows_[i].velocity_product;
-  for (const Constraint& one : constraints_) b_[one.first] -= aim(one).rate;
-  warm_start_rows(1);
-  bool found = solve();
-  for (int i = 0; i < kRubsAtEnd && rub_wires(); ++i) found = solve();
+  const bool found = solve_laws(rate);
 
   double fastest = 0;
   if (found) {

@@ -257,6 +257,7 @@ class JointSolver final : public System {
   void set_loose();
   void loosen_all();
   bool release();
+  bool drop_puller();
   bool overrun(double t);
   void note_excess(double t);
   bool leaps(const State<D>& state, double h) const;

@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/math/false_position.h"
+
 namespace obscura::sim {
 
 namespace {
@@ -81,29 +83,22 @@ double JointSolver<D>::step(ForwardDynamics<D>& dynamics, Integrate* integrate, 
     set_poses(state, t + h);
     if (strikes == kMostStrikes || int(dynamics.bodies().size()) > kMostStopped || !overrun(t + h)) break;
 
-    // false position, with half the weight of an end that stays (Dowell and Jarratt 1971)
-    double low = 0, high = span, at_low = kEndless, at_high = least_left(t + h), until = span;
-    bool was_low = false, stops = false;
+    double at_low = kEndless, until = span;
+    bool stops = false;
     for (const int i : overrun_) {
       const Stop& stop = stops_[std::size_t(i)];
       at_low = std::min(at_low, stop.left / size(held_[std::size_t(stop.block)]));
       stops = stops || stop.load == lower || stop.load == upper;
     }
+    FalsePosition root(0, at_low, span, least_left(t + h));
     for (int i = 0; i < kMostTries; ++i) {
-      until = (low * at_high - high * at_low) / (at_high - at_low);
+      until = root.next();
       restore(state);
       step_free(from, until);
       set_poses(state, from + until);
       const double now = least_left(from + until);
       if (std::fabs(now) <= kAtEnd) break;
-      if (now > 0) {
-        low = until, at_low = now;
-        if (i > 0 && was_low) at_high *= 0.5;
-      } else {
-        high = until, at_high = now;
-        if (i > 0 && !was_low) at_low *= 0.5;
-      }
-      was_low = now > 0;
+      root.put(until, now);
     }
     work += given;
     done += until;
@@ -300,6 +295,20 @@ double JointSolver<D>::least_left(double t) {
   return least;
 }
 
+// Lets go the rope or limit that would have to pull hardest, by rhs_; true if there is any.
+template <int D>
+bool JointSolver<D>::drop_puller() {
+  double least = 0;
+  int worst = -1;
+  for (const int k : bounded_blocks_) {
+    const Load load = acting_[std::size_t(k)].load;
+    const double f = rhs_[std::size_t(bounded_row(k))];
+    if ((load == lower || load == upper) && f < least) least = f, worst = k;
+  }
+  if (worst >= 0) acting_[std::size_t(worst)].load = none;
+  return worst >= 0;
+}
+
 // Stops what is at its end and comes beyond. The work of kinematic bodies, J.
 template <int D>
 double JointSolver<D>::strike(State<D>& state, double t) {
@@ -316,22 +325,12 @@ double JointSolver<D>::strike(State<D>& state, double t) {
     bounded_row(stop.block, stop.load, row);
     if (speed(row, at_) < 0) acting.load = stop.load;
   }
-  for (bool again = true; again;) {
+  do {
     set_loose();
     compute_rows();
     for (std::size_t r = 0; r < rows_.size(); ++r) rhs_[r] = -speed(rows_[r], at_);
     factors_.solve(rhs_.data());
-    again = false;
-    double least = 0;
-    int worst = -1;
-    for (const int k : bounded_blocks_) {
-      const double p = rhs_[std::size_t(bounded_row(k))];
-      if (acting_[std::size_t(k)].load != none && p < least) least = p, worst = k;
-    }
-    if (worst < 0) break;
-    // what joints pull from its end anyway
-    acting_[std::size_t(worst)].load = none, again = true;
-  }
+  } while (drop_puller());
   double work = 0;
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     if (driven_) work += rhs_[r] * drive_works_[r];
@@ -497,19 +496,10 @@ void JointSolver<D>::find_end_forces(const State<D>& state, double t) {
   const std::span<const double> without = dynamics_->accelerations(state, t);
   end_rates_.assign(without.begin(), without.end());
   push_known(end_rates_);
-  for (bool again = true; again;) {
+  do {
     set_loose();
     solve_forces(t, end_rates_);
-    again = false;
-    double least = 0;
-    int worst = -1;
-    for (const int k : bounded_blocks_) {
-      const Load load = acting_[std::size_t(k)].load;
-      const double f = rhs_[std::size_t(bounded_row(k))];
-      if ((load == lower || load == upper) && f < least) least = f, worst = k;
-    }
-    if (worst >= 0) acting_[std::size_t(worst)].load = none, again = true;
-  }
+  } while (drop_puller());
   // once more for what rows of different scales leave
   ways_ = rhs_;
   for (std::size_t r = 0; r < rows_.size(); ++r) push_rates(rows_[r], ways_[r], end_rates_);
