@@ -12,6 +12,7 @@
 #include "scene/check.h"
 #include "scene/copies.h"
 #include "scene/fields.h"
+#include "scene/friction.h"
 #include "scene/motions.h"
 #include "scene/overlap.h"
 #include "scene/path.h"
@@ -87,6 +88,7 @@ void add(BuilderContext<D>& making, const Fields& fields, const BodyKind& kind, 
   body.name = name;
   body.elasticity = number(fields.node("elasticity"), i, n);
   body.friction = number(fields.node("friction"), i, n);
+  body.static_friction = static_friction(fields, body.friction, making.complaints, i, n);
   const Node* drag = fields.given("drag");
   body.drag = drag ? number(*drag, i, n) : making.drag;
   const Node* ground_drag = fields.given("ground_drag");

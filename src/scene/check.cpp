@@ -7,6 +7,7 @@
 
 #include "scene/check_value.h"
 #include "scene/faults.h"
+#include "scene/other_words.h"
 
 namespace obscura::scene {
 
@@ -142,7 +143,10 @@ class Tables : private Reporter {
     const std::string_view near = nearest(entry.key, words);
     const bool is_table = several || entry.node.is_table();
     std::string hint;
-    if (const std::string plural = entry.key + 's'; owner.empty() && !elsewhere(plural, true).empty()) {
+    if (const std::string_view ours = other_word(entry.key, owner); !ours.empty()) {
+      hint = ours;
+    } else if (const std::string plural = entry.key + 's';
+               owner.empty() && !elsewhere(plural, true).empty()) {
       hint = "; '" + plural + "': " + elsewhere(plural, true);
     } else if (const std::string kind = kind_of(entry.key); owner.empty() && !kind.empty()) {
       hint = "; did you mean " + kind + "?";

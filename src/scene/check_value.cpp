@@ -101,6 +101,8 @@ class Values : private Reporter {
         return expression(node, key);
       case Form::expressions:
         return expressions(node, key);
+      case Form::torque:
+        return dimension() == 2 ? expression(node, key) : expressions(node, key);
       case Form::numbers:
         return numbers(node, key);
       case Form::any:

@@ -132,18 +132,25 @@ class ForceBuilder {
     force.name = name;
     const Node *among = fields.given("among"), *between = fields.given("between"), *of = fields.given("of"),
                *middle = fields.given("center");
-    const Node *potential = fields.given("potential"), *components = fields.given("components");
+    const Node *potential = fields.given("potential"), *components = fields.given("components"),
+               *torque = fields.given("torque");
     if (int(of != nullptr) + int(among != nullptr) + int(between != nullptr) > 1) {
       complaints_.add(
           fields.place(),
           fmt::format("{}: 'of', 'among' and 'between' each say what it acts on; give one", name));
       return;
     }
-    if ((potential != nullptr) == (components != nullptr)) {
-      complaints_.add(fields.place(), fmt::format("{} needs one of 'potential' and 'components'", name));
+    if ((potential != nullptr) == (components || torque)) {
+      complaints_.add(fields.place(),
+                      fmt::format("{} needs one of 'potential' and 'components', or a 'torque'", name));
       return;
     }
     const bool pair = among || between;
+    if (pair && torque) {
+      complaints_.add(torque->place,
+                      "'torque' is of forces on each body; what two give each other is a joint's");
+      return;
+    }
     if (pair && middle) {
       complaints_.add(
           middle->place,
@@ -163,6 +170,7 @@ class ForceBuilder {
       if (middle && !(force.center = center(*middle))) return;
       for (const int body : acted_on(fields, force.center ? force.center->body : -1))
         force.subjects.push_back(subject(body));
+      if (torque && !turned_by(*torque, fields.given("of") != nullptr, force)) return;
     }
 
     sim::ForceText text;
@@ -171,16 +179,40 @@ class ForceBuilder {
     for (int k = 0; components && k < D; ++k)
       text.components.push_back(typed(components->list()[std::size_t(k)])),
           constants_.read_by(text.components.back());
+    for (int k = 0; torque && k < sim::kAngular<D>; ++k)
+      text.torque.push_back(typed(D == 2 ? *torque : torque->list()[std::size_t(k)])),
+          constants_.read_by(text.torque.back());
     const auto made = sim::force_formula<D>(text, constants_.numbers());
     if (const auto* fault = std::get_if<sim::ForceFault>(&made)) {
       std::vector<std::string> names = sim::force_names<D>(pair);
       for (const auto& [constant, value] : constants_.numbers()) names.push_back(constant);
-      complain(fault->component < 0 ? *potential : components->list()[std::size_t(fault->component)],
-               potential ? "potential" : "components", fault->fault, names, complaints_);
+      const Node& wrong = fault->component < 0 ? *potential : fault->torque ? *torque : *components;
+      complain(wrong.is_list() ? wrong.list()[std::size_t(fault->component)] : wrong,
+               potential       ? "potential"
+               : fault->torque ? "torque"
+                               : "components",
+               fault->fault, names, complaints_);
       return;
     }
     force.formula = std::make_shared<sim::ForceFormula>(std::get<sim::ForceFormula>(made));
     give(std::move(force));
+  }
+
+  // whether all that are named turn
+  bool turned_by(const Node& torque, bool named, Force& force) {
+    const auto turns = [&](const Subject& it) { return world_.model.bodies[std::size_t(it.body)].turns(); };
+    if (force.center && force.center->body >= 0) {
+      complaints_.add(torque.place,
+                      "'torque' needs a 'center' that is a place: no body would feel the opposite");
+      return false;
+    }
+    for (const Subject& it : force.subjects) {
+      if (!named || turns(it)) continue;
+      complaints_.add(torque.place, fmt::format("'torque': '{}' does not turn",
+                                                world_.model.bodies[std::size_t(it.body)].name));
+      return false;
+    }
+    return true;
   }
 
   bool pairs(const Node& between, Force& force) {

@@ -125,6 +125,8 @@ std::string type(const Key& key) {
       return "expression";
     case Form::expressions:
       return "one expression a dimension";
+    case Form::torque:
+      return "expression; in space three";
     case Form::numbers:
       return "numbers with names";
     case Form::any:

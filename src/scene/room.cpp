@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/fields.h"
+#include "scene/friction.h"
 
 namespace obscura::scene {
 
@@ -77,6 +78,7 @@ Room<D> room(const Node& top, Diagnostics& complaints) {
   std::optional<double> elasticity, friction;
   if (const Node* e = fields.given("elasticity")) elasticity = e->number();
   if (const Node* mu = fields.given("friction")) friction = mu->number();
+  const std::optional<double> at_rest = static_friction(fields, friction, complaints);
 
   // walls about the size
   const Node* walls = fields.given("walls");
@@ -89,7 +91,7 @@ Room<D> room(const Node& top, Diagnostics& complaints) {
     room.bounds = {low, high};
     for (const WallSide<D>& side : sides<D>(walls)) {
       const Vec normal = (side.high ? -1.0 : 1.0) * Vec::Unit(side.axis) + Vec::Zero();
-      room.walls.push_back({side.high ? high : low, normal, elasticity, friction});
+      room.walls.push_back({side.high ? high : low, normal, elasticity, friction, at_rest});
       room.names.push_back(side.name);
       room.places.push_back(fields.given("size") ? fields.place("size") : Place{});
     }
@@ -107,9 +109,10 @@ Room<D> room(const Node& top, Diagnostics& complaints) {
     const Fields its(walls->list()[i], "room.walls");
     if (!its.given("point") || !its.given("normal")) continue;
     sim::Wall<D> wall{its.vector<D>("point"), its.vector<D>("normal").stableNormalized(), elasticity,
-                      friction};
+                      friction, at_rest};
     if (const Node* e = its.given("elasticity")) wall.elasticity = e->number();
-    if (const Node* mu = its.given("friction")) wall.friction = mu->number();
+    if (const Node* mu = its.given("friction")) wall.friction = mu->number(), wall.static_friction.reset();
+    if (its.given("static_friction")) wall.static_friction = static_friction(its, wall.friction, complaints);
     room.walls.push_back(wall);
     room.names.push_back(fmt::format("room.walls[{}]", i));
     room.places.push_back(its.place());

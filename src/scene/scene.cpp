@@ -187,6 +187,22 @@ void refuse_crowd(const Node& top, const sim::Model<D>& model, Diagnostics& comp
                                : "leave 'solver' out: the iterative one is for thousands of bodies"));
 }
 
+// what slips otherwise than it rests is the direct solver's
+template <int D>
+void check_static_friction(const Node& top, const sim::Model<D>& model, Diagnostics& complaints) {
+  const auto given = [](const auto& it) { return it.static_friction.has_value(); };
+  if (std::none_of(model.bodies.begin(), model.bodies.end(), given) &&
+      std::none_of(model.walls.begin(), model.walls.end(), given) &&
+      std::none_of(model.rails.begin(), model.rails.end(), given))
+    return;
+  const Fields physics = Fields::of(top, "physics");
+  const bool handout = model.collision == sim::Collision::handout;
+  if (handout || sim::solver(model) != sim::Solver::direct)
+    complaints.add(physics.place(handout ? "collision" : "solver"),
+                   handout ? "the handout has no friction, and so no 'static_friction'"
+                           : "'static_friction' is for the direct solver; write solver = \"direct\"");
+}
+
 template <int D>
 sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, const Dimension& told,
                     Scene& scene, Diagnostics& complaints, bool events = true);
@@ -252,6 +268,7 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   }
   if (model.collision == sim::Collision::handout) refuse_beyond_handout(top, D, complaints);
   refuse_crowd(top, model, complaints);
+  check_static_friction(top, model, complaints);
   refuse_taken_names(top, roster, complaints);
 
   // the extent that the camera fits; it sets the length of a reference pixel

@@ -181,6 +181,8 @@ Json value(const Key& key) {
       return any_of({string, number});
     case Form::expressions:
       return list_of(any_of({string, number}), 2, 3);
+    case Form::torque:
+      return any_of({string, number, list_of(any_of({string, number}), 3, 3)});
     case Form::numbers:
       return {{"type", "object"}, {"additionalProperties", any_of({number, string})}};
     case Form::any:

@@ -246,6 +246,9 @@ std::string expected(const Key& key, int dimension) {
     case Form::expressions:
       return space ? "three expressions such as [\"-2*x\", \"0\", \"0\"]"
                    : "two expressions such as [\"-2*x\", \"0\"]";
+    case Form::torque:
+      return space ? "three expressions such as [\"0\", \"-2*spiny\", \"0\"]"
+                   : "an expression such as \"-2*spin\"";
     case Form::numbers:
       return "a table of numbers with names";
     case Form::any:

@@ -53,6 +53,7 @@ enum class Form {
   bodies,       // references to bodies, or one
   expression,   // an expression, or a number
   expressions,  // one a dimension
+  torque,       // one expression, in space three
   numbers,      // [constants]: any names
   any,          // the value of another key
   moment,       // an exact time, or the name of a mark

@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "scene/fields.h"
+#include "scene/friction.h"
 #include "sim/collide/may_touch.h"
 #include "sim/collide/rails.h"
 #include "sim/constraint/joints/wire.h"
@@ -452,6 +453,7 @@ class TrackBuilder {
     const std::string word = side ? side->text() : "left";
     rail.left = word != "right", rail.right = word != "left";
     if (const Node* mu = fields.given("friction")) rail.friction = mu->number();
+    rail.static_friction = static_friction(fields, rail.friction, complaints_);
     if (const Node* e = fields.given("elasticity")) rail.elasticity = e->number();
     world_.model.rails.push_back(rail);
     paint(fields, name);

@@ -70,6 +70,22 @@ TEST(Diagnostics, WhatComesLaterIsNamedAsSuch) {
           "a.toml:1:11: version 2 of the language is newer than this obscura, which reads version 1");
 }
 
+TEST(Diagnostics, WordsOfOtherProgramsAreTranslated) {
+  refused("[[ball]]\nradius = 1\nrestitution = 0.5",
+          "a.toml:3:1: unknown key 'restitution' in [[ball]]; it is 'elasticity' here");
+  refused("[[ball]]\nradius = 1\nomega = 3",
+          "a.toml:3:1: unknown key 'omega' in [[ball]]; it is 'spin' here, in degrees per second");
+  refused("[[spring]]\nbetween = [[0, 1], [1, 1]]\nk = 3",
+          "a.toml:3:1: unknown key 'k' in [[spring]]; it is 'stiffness' here");
+  refused("[[particle]]\nmass = \"1 - t\"",
+          "a.toml:2:8: 'mass': expected a number of kilograms, got the string \"1 - t\"; a mass stays the "
+          "same in a "
+          "run: what it would change can be a [[force]]");
+  refused("[[particle]]\nvelocity = [\"t\", 0]",
+          "a.toml:2:13: 'velocity': expected numbers, got the string \"t\"; what moves by a formula has a "
+          "'motion'");
+}
+
 TEST(Diagnostics, TypesAreNeverGuessed) {
   refused("[[particle]]\nmass = \"heavy\"",
           "a.toml:2:8: 'mass': expected a number of kilograms, got the string \"heavy\"");

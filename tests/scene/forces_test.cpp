@@ -490,7 +490,7 @@ TEST(Forces, MistakesAreToldWithLineColumnAndAHint) {
       {"of = \"bal\"\npotential = \"x\"", "a.toml:4:6: no body is called 'bal'; did you mean 'ball'?"},
       {"of = \"ball\"\namong = \"ball\"\npotential = \"x\"",
        "'of', 'among' and 'between' each say what it acts on"},
-      {"of = \"ball\"", "force[0] needs one of 'potential' and 'components'"},
+      {"of = \"ball\"", "force[0] needs one of 'potential' and 'components', or a 'torque'"},
       {"among = \"ball\"\npotential = \"r\"", "a force between bodies needs two"},
       {"of = \"ball\"\ncenter = \"ball\"\npotential = \"r\"",
        "'ball' is both the centre and a body that the force acts on"},

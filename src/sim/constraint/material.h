@@ -2,6 +2,7 @@
 
 // Friction and elasticity of a pair in contact, from its two sides (docs/scene.md, `friction`, `elasticity`):
 //   mu = sqrt(mu_a mu_b),  e = sqrt(e_a e_b)      the body's own value if a wall has none
+// mu of what slips, and likewise mu_s >= mu of what does not.
 // The geometric mean is zero if one side is: ice under rubber slides, clay does not bounce.
 
 #include <cmath>
@@ -20,25 +21,36 @@ inline double mixed(double body, const std::optional<double>& wall) {
 
 /// Coulomb's friction and Newton's elasticity, of a body or of a pair that touches.
 struct Material {
-  double friction = 0;    // mu
-  double elasticity = 0;  // e
+  double friction = 0;         // mu
+  double static_friction = 0;  // mu_s
+  double elasticity = 0;       // e
 
   Material() = default;
-  Material(double mu, double e) : friction(mu), elasticity(e) {}
+  Material(double mu, double e) : friction(mu), static_friction(mu), elasticity(e) {}
   template <int D>
-  explicit Material(const Body<D>& body) : friction(body.friction), elasticity(body.elasticity) {}
+  explicit Material(const Body<D>& body)
+      : friction(body.friction),
+        static_friction(body.static_friction.value_or(body.friction)),
+        elasticity(body.elasticity) {}
 };
 
-inline Material mixed(const Material& a, const Material& b) {
-  return {mixed(a.friction, b.friction), mixed(a.elasticity, b.elasticity)};
+inline Material mixed(Material a, const Material& b) {
+  a.friction = mixed(a.friction, b.friction);
+  a.static_friction = mixed(a.static_friction, b.static_friction);
+  a.elasticity = mixed(a.elasticity, b.elasticity);
+  return a;
 }
-template <int D>
-Material mixed(const Material& body, const Rail<D>& rail) {
-  return {mixed(body.friction, rail.friction), mixed(body.elasticity, rail.elasticity)};
+/// Mixes a body's with that of a wall or a rail.
+template <class Surface>
+Material mixed(Material body, const Surface& surface) requires requires {
+  surface.static_friction;
 }
-template <int D>
-Material mixed(const Material& body, const Wall<D>& wall) {
-  return {mixed(body.friction, wall.friction), mixed(body.elasticity, wall.elasticity)};
+{
+  body.friction = mixed(body.friction, surface.friction);
+  body.static_friction =
+      mixed(body.static_friction, surface.static_friction ? surface.static_friction : surface.friction);
+  body.elasticity = mixed(body.elasticity, surface.elasticity);
+  return body;
 }
 
 /// Mixes the materials of body a and of b: another body, or wall -1 - b if b is negative.

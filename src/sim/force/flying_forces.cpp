@@ -45,12 +45,13 @@ OBSCURA_WIDE std::int64_t give_by_four(bool inverse, int n, const double* f, con
   return inverse ? give<true>(n, f, mass, v, rates, powers) : give<false>(n, f, mass, v, rates, powers);
 }
 
-// acts on each body alone, and asks for its place and velocity only
+// acts on each body alone, without a torque, and asks for its place and velocity only
 template <int D>
 bool alone(const Force<D>& force) {
   return force.on == Force<D>::On::each && force.law == Force<D>::Law::formula &&
-         !(force.center && force.center->body >= 0) && !force.formula->force.reads(each_slot::angle) &&
-         !force.formula->force.reads(each_slot::spin);
+         !(force.center && force.center->body >= 0) && !force.formula->torque &&
+         !force.formula->force.reads(each_slot::angle) && !force.formula->force.reads(each_slot::spin) &&
+         !force.formula->force.reads(each_slot::spin_y) && !force.formula->force.reads(each_slot::spin_z);
 }
 
 }  // namespace

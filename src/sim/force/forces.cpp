@@ -1,5 +1,5 @@
 // Forces on bodies, and between them.
-//   formula       f = its components, or -grad V; between two f2 = -f1
+//   formula       f = its components, or -grad V; between two f2 = -f1; tau = its torque, or -dV/d(angle)
 //   gravitation   f2 = -G m1 m2 d / (d^2 + s^2)^(3/2)      V = -G m1 m2 / sqrt(d^2 + s^2)
 //   coulomb       f2 =  k q1 q2 d / (d^2 + s^2)^(3/2)      V =  k q1 q2 / sqrt(d^2 + s^2)
 //   buoyancy      f  =  rho g A up, at the centroid c of A   V = rho g A (level - c_y)
@@ -50,7 +50,9 @@ Forces<D>::Forces(const Model<D>& model)
     it.evaluations.emplace_back(force.formula->force);
     if (force.formula->potential) it.evaluations.emplace_back(force.formula->energy);
     reads_angle_ =
-        reads_angle_ || (force.on == Force<D>::On::each && force.formula->force.reads(each_slot::angle));
+        reads_angle_ || (force.on == Force<D>::On::each &&
+                         (force.formula->force.reads(each_slot::angle) ||
+                          (force.formula->potential && force.formula->energy.reads(each_slot::angle))));
   }
   lanes_.resize(std::size_t(kLanes) * 16);
 }
@@ -216,25 +218,33 @@ void Forces<D>::each_force(Active& it, double t, const std::vector<BodyMotion<D>
     fill(each_slot::angle,
          [&](const Subject<D>& subject, const BodyMotion<D>& at) { return angle(subject, at); });
     fill(spin, [&](const Subject<D>&, const BodyMotion<D>& at) { return at.w[0]; });
+    if constexpr (D == 3) {
+      fill(spin_y, [&](const Subject<D>&, const BodyMotion<D>& at) { return at.w[1]; });
+      fill(spin_z, [&](const Subject<D>&, const BodyMotion<D>& at) { return at.w[2]; });
+    }
     evaluation.run(count, inputs);
 
-    const double* out[D];
-    for (int axis = 0; axis < (energies ? 1 : D); ++axis) out[axis] = evaluation.output(axis);
+    const double* out[D + kAngular<D>];
+    const int outputs = energies ? 1 : force.formula->torque ? D + kAngular<D> : D;
+    for (int axis = 0; axis < outputs; ++axis) out[axis] = evaluation.output(axis);
     if (energies) {
       for (int k = 0; k < count; ++k) found(first + k, Vec<D>(Vec<D>::Zero()), out[0][k]);
       continue;
     }
     std::int64_t finite = 0;
-    for (int axis = 0; axis < D; ++axis) finite |= within(out[axis], count, kLargestForce);
+    for (int axis = 0; axis < outputs; ++axis) finite |= within(out[axis], count, kLargestForce);
     for (int k = 0; k < count; ++k) {
       Vec<D> f;
+      AngularVec<D> torque = AngularVec<D>::Zero();
       for (int axis = 0; axis < D; ++axis) f[axis] = out[axis][k];
-      if (finite < 0 && within(f.data(), D, kLargestForce) < 0) {
+      for (int axis = D; axis < outputs; ++axis) torque[axis - D] = out[axis][k];
+      if (finite < 0 &&
+          (within(f.data(), D, kLargestForce) < 0 || within(torque.data(), kAngular<D>, kLargestForce) < 0)) {
         const Subject<D>& subject = force.subjects[std::size_t(it.subjects[std::size_t(first + k)])];
         refuse_force(model_, force, subject.body, t, f,
-                     point(subject, it.members[std::size_t(first + k)], motions).x);
+                     point(subject, it.members[std::size_t(first + k)], motions).x, torque);
       }
-      found(first + k, f, 0);
+      found(first + k, f, 0, std::optional<Vec<D>>(), torque);
       opposite -= f;
     }
   }
@@ -443,8 +453,8 @@ void Forces<D>::call(Active& it, double t, const std::vector<BodyMotion<D>>& mot
     const AngularVec<D>& torque = answered_torques_[k];
     if (within(f.data(), D, kLargestForce) < 0 ||
         within(torque.data(), int(torque.size()), kLargestForce) < 0)
-      refuse_force(model_, *it.force, it.force->subjects[std::size_t(it.subjects[k])].body, t, f,
-                   stage_.x[k]);
+      refuse_force(model_, *it.force, it.force->subjects[std::size_t(it.subjects[k])].body, t, f, stage_.x[k],
+                   torque);
     found(int(k), f, 0, std::optional<Vec<D>>(), torque);
   }
 }
@@ -480,11 +490,13 @@ void Forces<D>::apply(Active& it, double t, const std::vector<BodyMotion<D>>& mo
         k < 0 ? *it.force->center : it.force->subjects[std::size_t(it.subjects[std::size_t(k)])];
     if (member < 0) {
       if (potential && !driven_.empty()) driven_power_ -= f.dot(point(subject, member, motions).v);
+      if (potential && !driven_.empty() && it.force->turns())
+        driven_power_ -= torque.dot(motion(member, motions).w);
       return;
     }
     Wrench<D>& wrench = wrenches[std::size_t(member)];
     wrench.f += f;
-    if (it.force->law == Force<D>::Law::function) wrench.n += torque;
+    if (it.force->turns()) wrench.n += torque;
     if (at)
       wrench.n += moment<D>(Vec<D>(*at - motions[std::size_t(member)].x), f);
     else if (offset(subject))
@@ -550,6 +562,7 @@ double Forces<D>::energy_of(const State<D>& state, int body, const BodyMotion<D>
       const Vec<D> place = at.x + at.arm(subject.local);
       std::array<double, std::size_t(each_slot::time)> values{};
       for (int k = 0; k < D; ++k) values[std::size_t(x + k)] = place[k];
+      if (force.formula->energy.reads(each_slot::angle)) values[each_slot::angle] = angle(subject, at);
       values[mass] = subject.mass, values[charge] = subject.charge, values[copy] = subject.copy;
       std::array<const double*, std::size_t(each_slot::time)> inputs;
       for (std::size_t k = 0; k < inputs.size(); ++k) inputs[k] = &values[k];
@@ -574,7 +587,7 @@ double Forces<D>::power(double t, const std::vector<BodyMotion<D>>& motions) {
       const int member = k < 0 ? it.center : it.members[std::size_t(k)];
       if (member < 0) return;
       sum += f.dot(point(subject, member, motions).v);
-      if (it.force->law == Force<D>::Law::function) sum += torque.dot(motions[std::size_t(member)].w);
+      if (it.force->turns()) sum += torque.dot(motions[std::size_t(member)].w);
     };
     all(it, t, motions, false, found);
   }

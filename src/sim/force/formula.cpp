@@ -1,5 +1,6 @@
 // The variables of a force, and its formulas.
 //   f = -grad V                 by x, y, z of each body
+//   tau = -dV/d(angle)          in the plane
 //   f2 = -f1 = -dV/d(dx, ...)   by the way from the first of two to the second
 
 #include "sim/force/formula.h"
@@ -19,6 +20,7 @@ struct Vocabulary {
   ExpressionGraph graph;
   std::vector<Symbol> symbols;
   int by[3] = {-1, -1, -1};  // what a potential is differentiated by
+  int by_angle = -1;
   std::vector<int> velocities;
 
   void add(const std::string& name, int node) { symbols.push_back({name, node}); }
@@ -49,7 +51,8 @@ struct Vocabulary {
       add("m1", graph.variable(mass1)), add("m2", graph.variable(mass2));
       add("charge1", graph.variable(charge1)), add("charge2", graph.variable(charge2));
       add("t", graph.variable(time, true));
-      for (const char* one : {"x", "y", "z", "vx", "vy", "vz", "speed", "m", "charge", "angle", "spin", "i"})
+      for (const char* one : {"x", "y", "z", "vx", "vy", "vz", "speed", "m", "charge", "angle", "spin",
+                              "spinx", "spiny", "spinz", "i"})
         refuse(one,
                "is of one body, and this force is between two, which have dx, dy, r, m1, m2, charge1 and "
                "charge2");
@@ -94,13 +97,22 @@ struct Vocabulary {
       add("speed", graph.length(velocities));
     add("m", graph.variable(mass)), add("charge", graph.variable(charge)), add("i", graph.variable(copy));
     add("t", graph.variable(time, true));
-    for (const auto& [name, slot] : {std::pair{"angle", int(angle)}, std::pair{"spin", int(spin)}}) {
-      if (D == 3)
-        refuse(name, "is of the plane, and this scene is in space");
-      else if (potential)
-        refuse(name, "is no part of a potential: a force at the centre of mass does not turn the body");
+    const std::string of_plane = "is of the plane, and this scene is in space";
+    if (D == 3)
+      refuse("angle", of_plane), refuse("spin", of_plane + "; it has spinx, spiny and spinz");
+    else
+      add("angle", by_angle = graph.variable(angle));
+    const auto add_spin = [&](const char* name, int slot) {
+      if (potential)
+        refuse(name, no_velocity);
       else
         add(name, graph.variable(slot));
+    };
+    if (D == 2) {
+      add_spin("spin", spin);
+      for (const char* name : {"spinx", "spiny", "spinz"}) refuse(name, of_space + "; it has 'spin'");
+    } else {
+      add_spin("spinx", spin), add_spin("spiny", spin_y), add_spin("spinz", spin_z);
     }
     for (const char* one : {"m1", "m2", "charge1", "charge2"})
       refuse(one, "is of a force between two bodies ('among' or 'between')");
@@ -114,7 +126,7 @@ struct Vocabulary {
 
 template <int D>
 std::variant<ForceFormula, ForceFault> force_formula(const ForceText& text, const NamedNumbers& constants) {
-  const bool potential = text.components.empty();
+  const bool potential = text.components.empty() && text.torque.empty();
   Vocabulary<D> words(text.pair, text.centered, potential);
   ExpressionGraph& graph = words.graph;
   for (const auto& [name, value] : constants) words.add(name, graph.number(value));
@@ -122,25 +134,38 @@ std::variant<ForceFormula, ForceFault> force_formula(const ForceText& text, cons
 
   ForceFormula made;
   std::vector<int> components;
-  const auto read = [&](const std::string& one, int component) -> std::variant<int, ForceFault> {
+  const auto read = [&](const std::string& one, int component, bool torque) -> std::variant<int, ForceFault> {
     const auto node = parse_expression(one, words.symbols, graph);
-    if (const auto* fault = std::get_if<ExpressionFault>(&node)) return ForceFault{component, *fault};
+    if (const auto* fault = std::get_if<ExpressionFault>(&node)) return ForceFault{component, torque, *fault};
     const int found = std::get<int>(node);
     if (graph.is_number(found) && !std::isfinite(graph[found].value))
-      return ForceFault{component, {1, "is no finite number"}};
+      return ForceFault{component, torque, {1, "is no finite number"}};
     return found;
   };
   if (potential) {
-    const auto node = read(text.potential, -1);
+    const auto node = read(text.potential, -1, false);
     if (const auto* fault = std::get_if<ForceFault>(&node)) return *fault;
     const int energy = std::get<int>(node);
     for (int k = 0; k < D; ++k)
       components.push_back(graph.make(Operation::negate, graph.derivative(energy, words.by[k])));
+    made.torque = words.by_angle >= 0 && graph.depends(energy, each_slot::angle) && !text.pair;
+    if (made.torque)
+      components.push_back(graph.make(Operation::negate, graph.derivative(energy, words.by_angle)));
     made.energy = Program(graph, std::vector<int>{energy});
     made.potential = true;
   } else {
     for (int k = 0; k < D; ++k) {
-      const auto node = read(text.components[std::size_t(k)], k);
+      if (text.components.empty()) {
+        components.push_back(graph.number(0));
+        continue;
+      }
+      const auto node = read(text.components[std::size_t(k)], k, false);
+      if (const auto* fault = std::get_if<ForceFault>(&node)) return *fault;
+      components.push_back(std::get<int>(node));
+    }
+    made.torque = !text.torque.empty();
+    for (int k = 0; k < int(text.torque.size()); ++k) {
+      const auto node = read(text.torque[std::size_t(k)], k, true);
       if (const auto* fault = std::get_if<ForceFault>(&node)) return *fault;
       components.push_back(std::get<int>(node));
     }

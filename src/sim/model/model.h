@@ -44,6 +44,7 @@ struct Body {
   AngularVec<D> inertia = AngularVec<D>::Zero();  // principal moments, kg m^2; zero: does not turn
   double elasticity = 1;                          // the handout's e, 0 <= e <= 1
   double friction = 0;                            // Coulomb's mu >= 0; of a pair, the root of the product
+  std::optional<double> static_friction;          // of what does not slip, >= friction; none: the same
   double drag = 0;                                // c of f = -c v at the centre of mass, N s/m
   double ground_drag = 0;     // the same along the ground while it stands there, beside mu; N s/m
   double quadratic_drag = 0;  // c of f = -c |v| v, N s^2/m^2
@@ -67,9 +68,10 @@ struct Body {
 template <int D>
 struct Wall {
   Vec<D> point = Vec<D>::Zero();
-  Vec<D> normal = Vec<D>::Unit(1);   // unit, into the room
-  std::optional<double> elasticity;  // none: the body's own holds
-  std::optional<double> friction;    // none: the body's own holds
+  Vec<D> normal = Vec<D>::Unit(1);          // unit, into the room
+  std::optional<double> elasticity;         // none: the body's own holds
+  std::optional<double> friction;           // none: the body's own holds
+  std::optional<double> static_friction{};  // none: as friction
 };
 
 /// A smooth curve that is part of a body: others slide and roll on it.
@@ -81,6 +83,7 @@ struct Rail {
   bool left = true, right = false;        // the sides that are touched, seen along it; in space all are
   std::optional<double> elasticity;       // none: the other body's own holds
   std::optional<double> friction;         // likewise
+  std::optional<double> static_friction;  // none: as friction
 };
 
 /// One end of a spring: a point of a body, or a place in the room.
@@ -266,8 +269,9 @@ struct Subject {
 
 /// A force as formulas, made by sim/force/formula.h.
 struct ForceFormula {
-  Program force;   // its components, N
+  Program force;   // its components, N; of those with a torque that too, N m
   Program energy;  // its potential, J; of those that have one
+  bool torque = false;
   bool potential = false;
   bool timed = false;   // the time is in it
   bool resting = true;  // it may act on what does not move
@@ -313,6 +317,8 @@ struct Force {
 
   /// Whether it has a potential, which may change with the time.
   bool has_potential() const { return formula ? formula->potential : law != Law::function; }
+  /// Whether it may turn bodies about their centres.
+  bool turns() const { return formula ? formula->torque : law == Law::function; }
   /// Whether it has none and does work.
   bool does_work() const { return formula ? !formula->potential && formula->works : law == Law::function; }
 };

@@ -27,7 +27,7 @@ struct SceneInfo {
     std::vector<Vec3> vertices;    // of a polygon or hull, in its own frame from its centre of mass, m
     std::vector<DrawnForm> parts;  // of a compound
     std::vector<std::vector<int>> faces = {};  // of a hull: loops of vertices, counter-clockwise from outside
-    double friction = 0;                       // Coulomb's mu
+    double friction = 0;                       // Coulomb's mu of what does not slip
     bool bare = false;                         // it has no form but its rails
   };
   /// A curve on which others roll and slide, or which runs through them.

@@ -330,9 +330,9 @@ template <int D>
 BearingContact<D> Sleep<D>::bearing(const State<D>& state, const Contact<D>& contact) const {
   const int a = contact.key.a, b = contact.key.b;
   BearingContact<D> touch{.normal = contact.normal, .force = contact.force};
-  touch.friction = material(model_, a, b).friction;
+  touch.friction = material(model_, a, b).static_friction;
   if (const Rail<D>* rail = rail_of(model_, contact.key))
-    touch.friction = mixed(Material(model_.bodies[rail->body == a ? b : a]), *rail).friction;
+    touch.friction = mixed(Material(model_.bodies[rail->body == a ? b : a]), *rail).static_friction;
   if (moves(state, a)) touch.a = a, touch.arm_a = contact.point - state.x[a];
   if (moves(state, b)) touch.b = b, touch.arm_b = contact.point - state.x[b];
   return touch;

@@ -148,15 +148,20 @@ void BondedBodies<D>::gather(const State<D>& state) {
         body.mass = one.mass, body.inertia = one.inertia;
         Compound<D> whole;
         body.elasticity = body.friction = body.drag = body.ground_drag = 0;
+        bool stick = false;
+        double at_rest = 0;
         for (const int i : parts) {
           const Body<D>& part = model_.bodies[i];
           add_seated(part.shape, state.part_poses[i], whole.parts);
           // surfaces by mass
           body.elasticity += part.elasticity * part.mass / one.mass;
           body.friction += part.friction * part.mass / one.mass;
+          at_rest += part.static_friction.value_or(part.friction) * part.mass / one.mass;
+          stick = stick || part.static_friction;
           body.drag += part.drag, body.ground_drag += part.ground_drag;
           body.fixed = body.fixed || part.fixed, body.handout = body.handout || part.handout;
         }
+        if (stick) body.static_friction = at_rest;
         body.shape = std::move(whole);
       }
       if (body.turns() != turning) continue;

@@ -40,7 +40,7 @@ template <int D>
 SceneInfo::Body shown(const Body<D>& body) {
   SceneInfo::Body it;
   it.name = body.name;
-  it.mass = body.mass, it.friction = body.friction;
+  it.mass = body.mass, it.friction = body.static_friction.value_or(body.friction);
   it.fixed = body.fixed, it.turns = body.turns(), it.bare = body.bare;
   std::vector<DrawnForm> forms = of_form(body.shape, [](const auto& form) { return form.drawn(); });
   if (forms.size() > 1 || form<Compound<D>>(body.shape)) {
@@ -245,7 +245,8 @@ SceneInfo cast(const Model<D>& model, const State<D>& start, const std::vector<P
   for (const Body<D>& body : model.bodies) cast.bodies.push_back(shown(body));
   for (const Drive<D>& drive : model.drives) cast.bodies[std::size_t(drive.body)].fixed = false;
   for (const Wall<D>& wall : model.walls)
-    cast.walls.push_back({to_3d<D>(wall.point), to_3d<D>(wall.normal), wall.friction});
+    cast.walls.push_back({to_3d<D>(wall.point), to_3d<D>(wall.normal),
+                          wall.static_friction ? wall.static_friction : wall.friction});
   // both ways are drawn as lines; beads of one wire share it
   std::vector<const Curve<D>*> drawn;
   const auto add_curve = [&](const std::string& name, int body, const Curve<D>& curve) -> SceneInfo::Rail* {
@@ -260,7 +261,7 @@ SceneInfo cast(const Model<D>& model, const State<D>& start, const std::vector<P
     SceneInfo::Rail* it = add_curve(rail.name, rail.body, *rail.curve);
     // of space from all sides
     if (it) it->left = D == 3 || rail.left, it->right = D == 3 || rail.right;
-    if (it) it->friction = rail.friction;
+    if (it) it->friction = rail.static_friction ? rail.static_friction : rail.friction;
   }
   for (const Joint<D>& joint : model.joints)
     if (joint.curve) add_curve(joint.name, joint.b.body, *joint.curve);

@@ -16,6 +16,7 @@ namespace obscura::sim {
 namespace {
 
 constexpr double kLeastPart = 1e-3;  // of the way back to where joints belong
+constexpr double kNowhere = 1e-6;    // of the room: a way that is none, of what is on its way back
 constexpr double kJam = 100;  // times what all bodies weigh and are pulled by: a stack's floor bears it once
 
 }  // namespace
@@ -55,6 +56,13 @@ template <int D>
 JointTurn<D> ExactSolver<D>::turn_between(const State<D>& state, const Joint<D>& joint) const {
   return {joint.turn_between([&](int body) { return rounds_of(state, body); }),
           wound(state, std::size_t(&joint - model_.joints.data()))};
+}
+
+// the turn that the rows of a constraint are of; a contact's have none
+template <int D>
+JointTurn<D> ExactSolver<D>::turn_of(const State<D>& state, const Constraint& constraint) const {
+  if (constraint.kind == Constraint::Kind::contact) return AngularVec<D>::Zero();
+  return turn_between(state, model_.joints[constraint.of]);
 }
 
 // what bodies that are moved, and belts, give by a unit of force along a row, W; of impulse, J
@@ -119,22 +127,29 @@ double ExactSolver<D>::row_velocity(int row) const {
   return speed(rows_[row], poses_);
 }
 
-// collects the constraints of this state: with `all` every one, else without contacts that separate faster
-// than the resting speed; slower ones may be held if they would come back
+// collects the constraints of this state, without one-sided ones that separate faster than `fastest`, but for
+// those of returning_. Of what it leaves out, leaving_ has what separates slower than the resting speed.
 template <int D>
-void ExactSolver<D>::collect_constraints(const State<D>& state, bool all) {
+void ExactSolver<D>::collect_constraints(const State<D>& state, double fastest) {
   using Kind = typename Constraint::Kind;
-  constraints_.clear(), rows_.clear();
+  constraints_.clear(), rows_.clear(), leaving_.clear();
+  const auto returns = [&](const Constraint& constraint) {
+    return std::any_of(returning_.begin(), returning_.end(), [&](const Constraint& it) {
+      return it.kind == constraint.kind && it.of == constraint.of;
+    });
+  };
   const auto add = [&](Kind kind, int of, const JointTurn<D>& turn, bool one_sided) {
     Constraint constraint{};
     constraint.kind = kind, constraint.of = of;
     build_jacobian(constraint, turn);
-    if (one_sided && (constraint.off > limits_.touching_gap ||
-                      (!all && row_velocity(constraint.first) > progress_.rest_speed))) {
-      rows_.resize(constraint.first);
+    const double speed = one_sided ? row_velocity(constraint.first) : 0;
+    const bool apart = one_sided && constraint.off > limits_.touching_gap;
+    if (!apart && (speed <= fastest || returns(constraint))) {
+      constraints_.push_back(constraint);
       return;
     }
-    constraints_.push_back(constraint);
+    if (!apart && speed <= progress_.rest_speed) leaving_.push_back(constraint);
+    rows_.resize(constraint.first);
   };
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
@@ -163,11 +178,12 @@ void ExactSolver<D>::build_blocks(bool impulses) {
     ConeBlock<D> block;
     switch (constraint.kind) {
       case Kind::contact: {
-        block.mu = material(candidates_[constraint.of].key).friction;
         Tangent<D> slip;
         for (int i = 0; i < D - 1; ++i) slip[i] = row_velocity(constraint.first + 1 + i);
         const double fast = std::sqrt(slip.squaredNorm());
         if (!impulses && fast > still_speed_) block.sliding = true, block.direction = slip / fast;
+        const Material its = material(candidates_[constraint.of].key);
+        block.mu = impulses || block.sliding ? its.friction : its.static_friction;
         blocks_.push_back(block);
         break;
       }
@@ -283,6 +299,20 @@ void ExactSolver<D>::warm_start_rows(double h) {
   }
 }
 
+// gives what the laws let slip from here on the friction of what slips; true if that is less
+template <int D>
+bool ExactSolver<D>::begin_to_slip() {
+  bool any = false;
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind != Constraint::Kind::contact || modes_[constraint.block].kind != ModeKind::slide)
+      continue;
+    const double mu = material(candidates_[constraint.of].key).friction;
+    any = any || mu < blocks_[constraint.block].mu;
+    blocks_[constraint.block].mu = mu;
+  }
+  return any;
+}
+
 // forces and modes under the laws of the blocks, where the bodies have accelerations `rate` without them
 template <int D>
 bool ExactSolver<D>::solve_laws(std::span<const double> rate) {
@@ -290,15 +320,45 @@ bool ExactSolver<D>::solve_laws(std::span<const double> rate) {
   for (const Constraint& constraint : constraints_) b_[constraint.first] -= aim(constraint).rate;
   warm_start_rows(1);
   bool found = solve();
+  for (std::size_t i = 0; found && i < constraints_.size() && begin_to_slip(); ++i) found = solve();
   for (int i = 0; i < kMostRubs && rub_wires(); ++i) found = solve();
   return found;
+}
+
+// Collects also what separates slower than the resting speed and would be back soon, or from next to nowhere:
+// where the forces of all else close a row again, w < 0, it is held if its velocity v is at most
+// -w (rest_speed / g), or its way v^2 / -2w at most kNowhere of the room. What they do not close, or as slowly as
+// the far corner of a slim block that rocks, is on its way.
+template <int D>
+void ExactSolver<D>::collect_returning(const State<D>& state, double t) {
+  const auto unheld = dynamics_.accelerations(state, t);
+  scratch_.rate.assign(unheld.begin(), unheld.end());
+  if (!constraints_.empty()) {
+    build_blocks(false);
+    find_islands();
+    b_.resize(Eigen::Index(rows_.size()));
+    solve_laws(scratch_.rate);
+    for (int i = 0; i < int(rows_.size()); ++i) add_accelerations(i, f_[i], scratch_.rate);
+  }
+  for (Constraint& constraint : leaving_) build_jacobian(constraint, turn_of(state, constraint));
+  chain_response_.build(rows_, response_, dynamics_.chains());
+  const double soon = progress_.rest_speed * model_.scale / (limits_.unit_speed * limits_.unit_speed);
+  for (const Constraint& constraint : leaving_) {
+    const int row = constraint.first;
+    const double w = row_acceleration(row, scratch_.rate) + rows_[row].velocity_product;
+    const double v = row_velocity(row);
+    if (v <= -w * soon || v * v <= -2 * w * kNowhere * model_.scale) returning_.push_back(constraint);
+  }
+  collect_constraints(state, limits_.least_speed);
+  returning_.clear();
 }
 
 // the forces of this instant, and what each contact does. False where there are none.
 template <int D>
 bool ExactSolver<D>::solve_modes(State<D>& state, double t) {
   update_poses(state), pose_driven(t);
-  collect_constraints(state, false);
+  collect_constraints(state, limits_.least_speed);
+  if (!leaving_.empty()) collect_returning(state, t);
   build_blocks(false);
   if (constraints_.empty()) return true;
   find_islands();
@@ -389,11 +449,7 @@ void ExactSolver<D>::project_state(State<D>& state, bool impacts_follow) {
   const auto again = [&] {
     update_poses(state);
     rows_.clear();
-    for (Constraint& constraint : constraints_) {
-      build_jacobian(constraint, constraint.kind == Kind::contact
-                                     ? AngularVec<D>::Zero().eval()
-                                     : turn_between(state, model_.joints[constraint.of]));
-    }
+    for (Constraint& constraint : constraints_) build_jacobian(constraint, turn_of(state, constraint));
     chain_response_.build(rows_, response_, dynamics_.chains());
   };
   // how far they are off, at most; into b_ what would bring each row back

@@ -346,11 +346,7 @@ template <int D>
 void ExactSolver<D>::build_rows(const State<D>& state, double t) {
   update_poses(state), pose_driven(t);
   rows_.clear();
-  for (Constraint& constraint : constraints_) {
-    build_jacobian(constraint, constraint.kind == Constraint::Kind::contact
-                                   ? AngularVec<D>::Zero().eval()
-                                   : turn_between(state, model_.joints[constraint.of]));
-  }
+  for (Constraint& constraint : constraints_) build_jacobian(constraint, turn_of(state, constraint));
 }
 
 // the part of the interval from interval_.begun to `state` at which the first thing happens, and to what;

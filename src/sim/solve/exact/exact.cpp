@@ -42,7 +42,8 @@ typename ExactSolver<D>::Limits ExactSolver<D>::make_limits(const Model<D>& mode
   limits.unit_speed = std::sqrt(g * model.scale);
   if (limits.unit_speed == 0) limits.unit_speed = model.scale;
   limits.touching_gap = (event_mode ? 1e-12 : 1e-9) * model.scale;
-  limits.rest_speed = event_mode ? 1e-6 * limits.unit_speed : std::max(1e-6 * limits.unit_speed, 0.1 * g * h);
+  limits.least_speed = 1e-6 * limits.unit_speed;
+  limits.rest_speed = event_mode ? limits.least_speed : std::max(limits.least_speed, 0.1 * g * h);
   limits.most_cuts = event_mode ? 2000 + 100 * int(model.bodies.size()) : 12;
   limits.most_openings = event_mode ? limits.most_cuts : 6;
   limits.patience = event_mode ? 8 + int(model.bodies.size()) : 4;
@@ -355,6 +356,7 @@ void ExactSolver<D>::release_contact() {
           *progress_.released);  // one of many that may bear the same load: its force tells nothing
     }
   }
+  if (begin_to_slip()) solve();
   progress_.released.reset();
 }
 
@@ -428,7 +430,7 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   pose_driven(t);
   find_contacts(state, limits_.touching_gap);
   update_poses(state);
-  collect_constraints(state, true);
+  collect_constraints(state);
   save(state, interval_.begun);
   build_blocks(true);
   find_islands();
@@ -476,7 +478,7 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   // push apart bodies that overlap now and did not before
   pose_driven(t + h);
   find_contacts(state, limits_.touching_gap);
-  collect_constraints(state, true);
+  collect_constraints(state);
   build_blocks(true);
   find_islands();
   for (const Constraint& constraint : constraints_) {

@@ -98,6 +98,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     int row_joints = 0;                   // that no chain holds
     double touching_gap = 0;              // m: gaps up to this touch
     double rest_speed = 0;                // m/s: slower impacts do not bounce
+    double least_speed = 0;               // m/s: what separates slower touches
     double unit_speed = 0;                // m/s: sqrt(g L), or L a second
     int most_cuts = 0;                    // of a step, by one body among others
     int most_openings = 0;                // cuts of a step by what lets go
@@ -258,11 +259,14 @@ class ExactSolver final : public ContactSolver<D>, private System {
   double given(int row) const;
   double motor_power() const;
   JointTurn<D> turn_between(const State<D>& state, const Joint<D>& joint) const;
-  void collect_constraints(const State<D>& state, bool all);
+  JointTurn<D> turn_of(const State<D>& state, const Constraint& constraint) const;
+  void collect_constraints(const State<D>& state, double fastest = 1e300);
+  void collect_returning(const State<D>& state, double t);
   void build_jacobian(Constraint& constraint, const JointTurn<D>& turn);
   void build_blocks(bool impulses);
   static constexpr int kMostRubs = 50;  // rounds of friction on wires
   bool solve_laws(std::span<const double> rate);
+  bool begin_to_slip();
   bool solve_modes(State<D>& state, double t);
   double loads() const;
   bool jammed() const;
@@ -398,6 +402,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   std::vector<ContactCandidate<D>> candidates_;
   std::vector<int> on_piece_;  // of the joints of the group at hand, as State::on_piece
   std::vector<Constraint> constraints_;
+  std::vector<Constraint> leaving_, returning_;  // see collect_constraints()
   std::vector<Row<D>> rows_;
   ChainResponse<D> chain_response_;  // of rows_
   std::vector<ConeBlock<D>> blocks_;

@@ -60,7 +60,7 @@ void ExactSolver<D>::resolve_contact_impacts(State<D>& state) {
   double before = 0;
   for (int round = 0; round < kRounds; ++round) {
     update_poses(state);
-    collect_constraints(state, true);
+    collect_constraints(state);
     // a second time only for what the first has set off, not for its rounding
     const double fast = closing_speed();
     if (fast <= (round == 0 ? still_speed_ : kRounding * still_speed_)) return;

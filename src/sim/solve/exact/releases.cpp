@@ -21,7 +21,7 @@ constexpr double kWild = 8;       // times all loads: a contact that pulls so mu
 constexpr double kFar = 4;        // a ratio of two lengths, of which the geometric mean is tried
 constexpr int kMostSecants = 100;
 constexpr double kDoubt =
-    1e-9;  // of the largest force: the laws are solved where it is beyond them by so much
+    1e-11;  // of the largest force: the laws are solved where it is beyond them by so much
 constexpr double kSoon = 1e-7;  // of the interval: how exactly is known where the laws let go
 
 }  // namespace

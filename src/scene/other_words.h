@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string_view>
+
+namespace obscura::scene {
+
+/// What obscura has for a key by which other programs of this field go (Box2D, MuJoCo, pymunk, SDF, Blender)
+/// or a book, as the end of a message: "; it is 'elasticity' here". Empty: none is known, or `owner`, the
+/// table that it stands in, is none of bodies, joints, springs or materials.
+std::string_view other_word(std::string_view key, std::string_view owner);
+
+}  // namespace obscura::scene
