@@ -157,6 +157,20 @@ std::vector<Placing::Candidate> Placing::along(const Point& tail, const Point& t
     all.push_back({tip + clear(u, gap, size), ring + 1.5 * unit, false});
     ring += 8 * unit;
   }
+  // where many arrows leave one body: beyond its outline
+  const double along = u.cwiseAbs().dot(size) / 2;
+  for (const double off : {36.0, 52.0, 70.0}) {
+    if (!fixed) break;
+    for (const double side : {1.0, -1.0}) {
+      for (const double part : {1.0, 0.4})
+        all.push_back(
+            {tail + part * (tip - tail) + clear_line(side * v, gap + off * unit, size), ring, true});
+      // beside its line, as of an arrow along the ground
+      all.push_back({tip + (gap + off * unit / 2 + along) * u + clear_line(side * v, gap, size), ring, true});
+    }
+    all.push_back({tip + clear(u, gap + off * unit / 2, size), ring, true});
+    ring += 6 * unit;
+  }
   return all;
 }
 
