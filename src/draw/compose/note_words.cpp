@@ -20,6 +20,7 @@ constexpr double kMillimetre = 72 / 25.4;
 constexpr double kNormal = 9 * 72 / 25.4;  // a unit normal: 9 mm
 constexpr double kAngle = 13;              // radius of an arc
 constexpr double kOffHatching = 2.5;       // from it to the words of a film
+constexpr double kMarginInPrint = 0.25;    // around words, of their height
 constexpr double kCovered = 60;            // the cost of words over a body
 constexpr double kOnOutline = 8;           // of each unit of a body's outline under words of a film
 constexpr double kOnTrail = 0.8;           // of each unit of a trail or path under words
@@ -39,7 +40,7 @@ Notes::Notes(const sim::SceneInfo& cast, const Palette& colours, const Projectio
       now_(now),
       how_(how),
       list_(list),
-      placing_(projection.window()),
+      placing_(projection.window(), how.plan || how.survey ? 0.12 : kMarginInPrint),
       point_(how.lettering.point),
       arrow_(how.lettering.arrow),
       type_(kType * point_),

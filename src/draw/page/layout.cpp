@@ -296,12 +296,14 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
     return std::min(wide / size.x(), high / size.y());
   };
 
+  const bool still = camera.keys.empty() && camera.follow.empty();
   // the caption's lines depend on the room's width, which depends on the strip's height
   double strip = w * kPageMargin;
   Setting setting;
   const double page = layout.width - 2 * std::max(w * kPageMargin, 0.045 * layout.width);
   if (layout.caption) {
-    auto room = [&] { return world.closed ? scale(strip) * size.x() + 2 * w * kWallLine : page; };
+    // a camera of the scene's own shows the room in another size
+    auto room = [&] { return world.closed && still ? scale(strip) * size.x() + 2 * w * kWallLine : page; };
     strip = w * look.type_scale * kStrip;
     setting = set_words(look, w, room(), page);
     for (int k = 0; k < 3 && setting.height(look.type_scale) * w + setting.deep > strip; ++k) {
@@ -320,7 +322,6 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
   // height that is left over goes above and below in equal parts; with a camera that moves, or an unbounded
   // world, the caption stays at the top
   const double spare = layout.height - strip - 2 * band - w * kPageMargin - layout.scale * size.y();
-  const bool still = camera.keys.empty() && camera.follow.empty();
   const double above = world.closed && still ? spare / 2 : 0;
   layout.clipped = !(world.closed && still);
   const double top = layout.caption ? strip + above - 0.12 * w * kStrip : 0;
