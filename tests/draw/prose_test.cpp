@@ -18,7 +18,7 @@ TEST(Prose, DollarsHoldMathematicsAsInPandoc) {
   EXPECT_EQ(all[2].text, ", and ");
   EXPECT_EQ(all[3].text, "E");
   for (const char* money : {"from $5 to $10", "$ 5 $", "5 $", "no dollars", ""})
-    EXPECT_FALSE(has_mathematics(money)) << money;
+    EXPECT_FALSE(contains_mathematics(money)) << money;
 }
 
 TEST(Prose, IsReadInLetters) {
@@ -50,7 +50,7 @@ TEST(Prose, LinesEndBetweenWordsAndNotInMathematics) {
   const std::string words = "so $a + b + c$ it is";
   for (double width = 10; width < 300; width += 5)
     for (const std::string& line : wrapped(words, Face::regular, 20, width))
-      EXPECT_EQ(has_mathematics(line), line.find('$') != line.npos) << line;
+      EXPECT_EQ(contains_mathematics(line), line.find('$') != line.npos) << line;
   const std::string cut = fitted("words and $a + b + c$", Face::regular, 20, 150);
   EXPECT_EQ(cut.find('$'), std::string::npos) << cut;
 }

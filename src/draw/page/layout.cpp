@@ -115,7 +115,7 @@ Setting set_words(const Look& look, double weight, double room, double page) {
   const double beside = clock > 0 ? clock * found.size + kClockGap * unit : 0;
   found.title = rows_of(look.title, Face::bold, kTitle * unit, span - beside);
   if (lines == 2) found.subtitle = rows_of(look.subtitle, Face::medium, kSubtitle * unit, span);
-  if (lines == 2 && !found.title.empty() && has_mathematics(found.title.back())) {
+  if (lines == 2 && !found.title.empty() && contains_mathematics(found.title.back())) {
     const double size = kTitle * unit;
     found.deep = std::max(0.0, prose(found.title.back(), Face::bold, size, {}).descent - kLetters * size);
   }
@@ -137,7 +137,7 @@ void write_caption(Layout& layout, const Look& look, const Palette& colours, con
         {{.text = "", .face = Face::medium, .size = kClock * unit, .color = colours.ink, .tabular = true}}};
   }
   const auto write = [&](const std::string& words, Face face, double size, Color color, double x) {
-    if (has_mathematics(words))
+    if (contains_mathematics(words))
       layout.prose.emplace_back(prose(words, face, size, color), Point(x, baseline));
     else if (!words.empty())
       layout.words.push_back(
@@ -184,7 +184,7 @@ void draw_words(const Layout& layout, List& list) {
 
 double width_of(const std::string& words, Face face, double size, bool tabular) {
   if (words.empty()) return 0;
-  if (has_mathematics(words)) return prose(words, face, size, {}).width;
+  if (contains_mathematics(words)) return prose(words, face, size, {}).width;
   return shape({{0, 0}, Align::left, {{.text = words, .face = face, .size = size, .tabular = tabular}}})
       .width;
 }

@@ -62,9 +62,9 @@ Point clear(const Point& n, double gap, const Point& size) {
 
 /// The same for a label that clears the whole line across n: no corner of it reaches over.
 Point clear_line(const Point& n, double gap, const Point& size) {
-  const Point part = n.cwiseAbs(), moved = part_of_half(part);
-  const double corner = (part.array() * (1 - moved.array()) * size.array()).sum() / 2;
-  return clear(n, gap, size) + corner * n;
+  const Point part = n.cwiseAbs();
+  const double corner = (part.array() * (1 - part.array()) * size.array()).sum() / 2;
+  return n * (gap + corner) + n.cwiseProduct(size) / 2;
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ std::vector<std::string> balanced(const std::string& words, Face face, double si
 void centered(const std::vector<std::string>& lines, Face face, double size, double x, double& baseline,
               Color color, List& list) {
   for (const std::string& line : lines) {
-    if (has_mathematics(line)) {
+    if (contains_mathematics(line)) {
       const Formula set = prose(line, face, size, color);
       add(set, {x - set.width / 2, baseline}, list);
     } else {

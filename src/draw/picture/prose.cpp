@@ -157,7 +157,7 @@ std::vector<Phrase> phrases(std::string_view words) {
   return all;
 }
 
-bool has_mathematics(std::string_view words) {
+bool contains_mathematics(std::string_view words) {
   if (words.find('$') == words.npos) return false;
   const std::vector<Phrase> all = phrases(words);
   return std::any_of(all.begin(), all.end(), [](const Phrase& phrase) { return phrase.mathematics; });

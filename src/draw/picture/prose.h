@@ -21,7 +21,7 @@ struct Phrase {
 std::vector<Phrase> phrases(std::string_view words);
 
 /// Whether something in the words is mathematics.
-bool has_mathematics(std::string_view words);
+bool contains_mathematics(std::string_view words);
 
 /// What the mathematics in words says wrongly, at its column of the words.
 std::optional<FormulaMistake> prose_mistake(std::string_view words);
