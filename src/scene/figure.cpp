@@ -9,6 +9,7 @@
 #include "draw/picture/formula.h"
 #include "scene/fields.h"
 #include "scene/links.h"
+#include "scene/picture.h"
 
 namespace obscura::scene {
 
@@ -340,7 +341,7 @@ std::vector<draw::Caption> captions(const Node& top, const Seating<D>& roster, c
   for (const Node& node : tables(fields, "caption")) {
     const Fields its(node, "film.caption");
     if (!its.given("text")) continue;
-    draw::Caption caption{its.text("text"), read.shown(its)};
+    draw::Caption caption{prose(its, "text", complaints), read.shown(its)};
     const auto film = [&](const draw::Cue& cue) {
       if (cue.after) return cue.film;
       const auto exact = sim::from_double(cue.time);

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "draw/picture/prose.h"
 #include "draw/space/camera.h"
-#include "scene/fields.h"
 #include "sim/model/body_motion.h"
 #include "sim/shape/shape.h"
 
@@ -38,16 +38,24 @@ draw::CameraKey camera_key(const Fields& fields) {
 
 }  // namespace
 
+const std::string& prose(const Fields& fields, const char* key, Diagnostics& complaints) {
+  const std::string& words = fields.text(key);
+  if (const auto wrong = draw::prose_mistake(words))
+    complaints.add(fields.place(key), fmt::format("'{}', column {}: {}", key, wrong->column, wrong->what));
+  return words;
+}
+
 void look(const Node& top, const NameTable& roster, draw::Look& look, Diagnostics& complaints) {
   const Fields words = Fields(top, ""), fields = Fields::of(top, "look");
-  look.title = words.text("title");
-  look.subtitle = words.text("subtitle");
+  look.title = prose(words, "title", complaints);
+  look.subtitle = prose(words, "subtitle", complaints);
   look.theme = fields.text("theme") == "screen" ? draw::Theme::screen : draw::Theme::paper;
   look.velocity_scale = fields.number("velocity_scale");
   look.velocity_scale_given = fields.given("velocity_scale") != nullptr;
   if (const Node* scale = fields.given("force_scale")) look.force_scale = scale->number();
   look.caption = fields.flag("caption");
   look.clock = fields.flag("clock");
+  look.badge = Fields::of(top, "film").flag("badge");
   look.hatching = fields.flag("hatching");
   look.axes = fields.flag("axes");
   look.type_scale = fields.number("type_scale");
@@ -220,7 +228,7 @@ draw::Pace speed(const Node& node, const Fields& film, sim::Rational duration, s
   for (const Node& each : all ? all->list() : Node::List{}) {
     const Fields its(each, "film.card");
     const sim::Rational time = its.rational("time"), lasting = its.rational("lasting");
-    draw::Card card{its.text("title"), its.text("text")};
+    draw::Card card{prose(its, "title", complaints), prose(its, "text", complaints)};
     card.fade = std::min(its.number("fade"), sim::value(lasting) / 2);
     card.first = time.num == 0, card.last = time == duration;
     if (card.title.empty() && card.text.empty())
@@ -283,6 +291,7 @@ Film film(const Node& top, Diagnostics& complaints) {
   film.speed = speed(fields.node("speed"), fields, Fields(top, "").rational("duration"), film.titles.cards,
                      complaints);
   vary(fields, film, complaints);
+  prose(fields, "vary_names", complaints);
   film.titles.badge = fields.flag("badge");
   const sim::Rational duration = Fields(top, "").rational("duration");
   film.titles.fade = fields.number("fade");

@@ -1,14 +1,19 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "scene/complaints.h"
 #include "scene/document.h"
+#include "scene/fields.h"
 #include "scene/room.h"
 #include "scene/roster.h"
 #include "scene/scene.h"
 
 namespace obscura::scene {
+
+/// Words, in which mathematics may stand between dollars. Complains of what is wrong in it.
+const std::string& prose(const Fields& fields, const char* key, Diagnostics& complaints);
 
 /// How the scene is to look; the bodies have theirs already, and trails by name are added to them.
 void look(const Node& top, const NameTable& roster, draw::Look& look, Diagnostics& complaints);

@@ -74,7 +74,9 @@ struct Scene {
   bool show_divergence = false;                       // physics.diverge
   std::vector<std::string> marks;                     // of its run that film and figure name
   bool marked = false;                                // their times, and that of a stop, are in place
-  bool figure_waits = false;                          // its figure is of a mark that the run does not come to
+  std::vector<std::pair<std::string, sim::Rational>>
+      passed;                 // marks that its run comes to, s, where it is known
+  bool figure_waits = false;  // its figure is of a mark that the run does not come to
 
   int dimension() const { return world.index() == 0 ? 2 : 3; }
   /// A run of it from its start, or from a state that was saved of one; null if that is no state of this

@@ -49,6 +49,50 @@ TEST_F(Describe, SaysWhatHitsWhatWhenAndHowFast) {
   EXPECT_EQ(run.out.find("hits the floor"), run.out.rfind("hits the floor"));
 }
 
+/// Marks, what conditions let go, what arrows and plots show, and words that come at an instant.
+TEST_F(Describe, TellsOfMarksAndOfWhatIsShown) {
+  scene(R"(title = 'It falls by $\frac{1}{2} g t^2$'
+duration = 1
+[room]
+size = [4, 3]
+[[ball]]
+name = "bob"
+radius = 0.1
+position = [2, 2]
+[[joint]]
+name = "thread"
+type = "rod"
+between = [[2, 2.8], "bob"]
+[[when]]
+time = 0.25
+do = [{ release = "thread" }, { mark = "cut" }]
+[film]
+figure = true
+[[film.vector]]
+quantity = "joint_force"
+of = "bob"
+[[film.vector]]
+quantity = "weight"
+of = "bob"
+[[film.plot]]
+quantity = ["height"]
+of = "bob"
+[[film.label]]
+at = "bob"
+text = '"free"'
+start = "cut"
+)");
+  const Outcome run = obscura("describe scene.toml");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("It falls by ½ g t².\n"));
+  EXPECT_THAT(run.out, HasSubstr("Arrows show joint force and weight of the bob."));
+  EXPECT_THAT(run.out, HasSubstr("A plot shows height of the bob over time."));
+  EXPECT_THAT(run.out, HasSubstr("At 0.25 s is the mark \"cut\"."));
+  EXPECT_THAT(run.out, HasSubstr("joint thread is let go"));
+  EXPECT_THAT(run.out, HasSubstr("The film says at 0.25 s: \"free\""));
+  EXPECT_THAT(run.out, Not(HasSubstr("breaks")));
+}
+
 // sqrt(2 g h) = 4.429 m/s, half of that after it: not the speed with which the step began; a millionth as
 // large too
 TEST_F(Describe, TellsTheSpeedOfAnImpactInRoomsOfEverySize) {

@@ -24,6 +24,7 @@ namespace obscura::app {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 const std::string kScenes = OBSCURA_SOURCE_DIR "/scenes/";
 
@@ -517,6 +518,33 @@ a &lt; b &amp; c
   scene("duration = 0.1\n[room]\nsize = [4, 2.25]\n");
   ASSERT_EQ(obscura("render scene.toml --size 320x180 --fps 20 -o mute.mp4").exit, 0);
   EXPECT_FALSE(std::filesystem::exists(path("mute.vtt")));
+}
+
+/// Marks of the run begin chapters, also where the film names none of them.
+TEST_F(MarkedFilm, HasChaptersOfItsMarks) {
+  if (!installed("ffprobe")) GTEST_SKIP() << "needs ffprobe";
+  scene(R"(title = "A fall"
+duration = 4
+[room]
+size = [4, 3]
+[[ball]]
+name = "ball"
+radius = 0.25
+position = [2, 1.25]
+elasticity = 0.9
+[[when]]
+touches = ["ball", "floor"]
+again = true
+do = [{ mark = "hit" }]
+)");
+  ASSERT_EQ(obscura("render scene.toml --size 320x180 --fps 20 -o film.mp4").exit, 0);
+  const std::string chapters = shell("ffprobe -v error -show_chapters -of csv film.mp4").out;
+  EXPECT_THAT(chapters, HasSubstr("A fall"));
+  // at the first frame after sqrt(2 h / g) = 0.4515 s
+  EXPECT_THAT(chapters, HasSubstr(",0.500000,"));
+  EXPECT_THAT(chapters, HasSubstr(",hit\n"));
+  EXPECT_THAT(chapters, HasSubstr(",hit (3)\n"));
+  EXPECT_THAT(chapters, Not(HasSubstr(",hit (2)\n"))) << "it is less than a second behind the first";
 }
 
 /// Captions have a strip of the page for themselves: the picture, and the plots below it, end above.

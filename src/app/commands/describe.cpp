@@ -9,6 +9,7 @@
 #include "app/console/options.h"
 #include "app/console/say.h"
 #include "app/run/description.h"
+#include "app/run/run_marks.h"
 #include "app/run/trouble.h"
 #include "scene/scene.h"
 
@@ -22,7 +23,7 @@ struct DescribeFlags {
 };
 
 int describe(const DescribeFlags& flags) {
-  const scene::Scene scene = scene::read(flags.scene, flags.sets);
+  const scene::Scene scene = with_run_marks(scene::read(flags.scene, flags.sets));
   warn_of_steps(scene);
   const Story told = story(scene);
   for (const std::string& sentence : told.sentences) say(stdout, "{}\n", sentence);

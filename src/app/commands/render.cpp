@@ -61,7 +61,9 @@ void make_draft(const RenderFlags& flags, scene::Film& film) {
 void make_quick(const RenderFlags& flags, const Output& out, scene::Scene& scene) {
   if (flags.preset || out.form != Output::Form::movie) return;
   scene.film.preset.clear();
-  const std::string encoder = media::codec_name(out.path, movie_spec(scene));
+  media::MovieSpec spec = movie_spec(scene);
+  spec.alpha = flags.film.transparent;
+  const std::string encoder = media::codec_name(out.path, spec);
   if (encoder == "libx264" || encoder == "libx265") scene.film.preset = "ultrafast";
 }
 

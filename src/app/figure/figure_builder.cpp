@@ -28,6 +28,7 @@ namespace {
 
 constexpr double kColumn = 84 * 72 / 25.4;   // pt
 constexpr double kGutter = 8, kLetter = 17;  // pt: between panels; above one, for its letter
+constexpr double kRows = 6;                  // pt: between panels below each other
 // lines of runs: ink, and colours that mean nothing else
 constexpr std::array<const char*, 5> kTold{"", "orange", "purple", "sky", "grey"};
 constexpr std::int64_t kMostPanels = 100;
@@ -246,7 +247,7 @@ Page FigureBuilder::page() const {
   double row_height = 0;
   for (std::size_t i = 0; figure.room && i < cells.size(); ++i) {
     const int column = int(i) % columns;
-    if (column == 0) top += row_height, row_height = 0;
+    if (column == 0) top += row_height + (i > 0 ? kRows * draw::kPoint : 0), row_height = 0;
     double height = 0;
     const draw::Point corner(column * (each + kGutter) * draw::kPoint, top);
     const draw::Illustrator artist = depictor(cells[i], each);

@@ -25,6 +25,7 @@
 #include "app/run/plots.h"
 #include "app/run/simulation.h"
 #include "app/run/trouble.h"
+#include "draw/picture/prose.h"
 #include "media/error.h"
 #include "media/file.h"
 #include "media/part.h"
@@ -247,7 +248,7 @@ Filming::DrawnSegment Filming::print(FilmSegment take, FrameRenderer& darkroom) 
       Origin of_frame = origin;
       of_frame.shot = take.shots[i], of_frame.state = take.states[i], of_frame.frames = 0;
       of_frame.states = checksums(take.states[i], take.all_bodies(i));
-      media::Tags tags = of_frame.tags(scene_.look.title);
+      media::Tags tags = of_frame.tags(draw::in_letters(scene_.look.title));
       tags["Description"] = picture_text(scene_, darkroom.scene_info(), take.moments[i]);
       media::write_png(output_.file(take.shots[i].frame), image,
                        {.alpha = options_.transparent, .tags = tags});
@@ -260,7 +261,7 @@ Filming::DrawnSegment Filming::print(FilmSegment take, FrameRenderer& darkroom) 
     print.whole = print.whole && print.frames == frames_of(take.number);
     origin.states = states;
     media::MovieSpec spec = spec_;
-    spec.tags = origin.tags(scene_.look.title);
+    spec.tags = origin.tags(draw::in_letters(scene_.look.title));
     const media::Segment segment = encoder->finish();
     if (print.whole)
       store_->put(take.number, output_.path, spec, segment);

@@ -19,6 +19,7 @@
 #include "app/run/plots.h"
 #include "app/run/simulation.h"
 #include "app/run/trouble.h"
+#include "draw/picture/prose.h"
 #include "gl/renderer.h"
 #include "media/error.h"
 #include "media/file.h"
@@ -235,7 +236,7 @@ std::string PageFilm::watched() { return html(true, {}); }
 
 std::string PageFilm::html(const gl::ContextOptions& context) {
   draw::Picture& first = making_->first;
-  const page::Sheet sheet{.width = kStill, .title = making_->scene.look.title};
+  const page::Sheet sheet{.width = kStill, .title = draw::in_letters(making_->scene.look.title)};
   if (first.solids.empty()) return html(false, page::page(first, page::Form::svg, sheet));
   // surfaces are pixels, lines over them are not
   gl::Renderer renderer(kStillPixels, int(std::lround(kStillPixels / first.aspect)), context);
@@ -256,12 +257,12 @@ std::string PageFilm::html(bool watched, const std::vector<std::uint8_t>& still)
   m.origin.states = m.states;
   if (whole) m.origin.states->close();
   page::FilmPage out;
-  out.title = scene.look.title.empty() ? scene.name : scene.look.title;
+  out.title = scene.look.title.empty() ? scene.name : draw::in_letters(scene.look.title);
   out.dark = scene.look.theme == draw::Theme::screen;
   out.watched = watched;
   out.still = still;
   out.generator = "obscura " OBSCURA_VERSION;
-  out.origin = m.origin.tags(scene.look.title).at("obscura");
+  out.origin = m.origin.tags(draw::in_letters(scene.look.title)).at("obscura");
   // what happens is told of a whole run
   if (whole && !m.story) m.story = app::story(scene);
   if (m.story) out.sentences = m.story->sentences;

@@ -16,6 +16,7 @@
 #include "app/film/film.h"
 #include "app/film/output.h"
 #include "app/film/subtitles.h"
+#include "app/run/run_marks.h"
 #include "media/error.h"
 #include "media/file.h"
 #include "media/part.h"
@@ -87,7 +88,9 @@ std::int64_t join(Store& store, const std::string& movie, const Joining& joining
       } catch (const scene::Error&) {
         // parts of another version: joined without
       }
-      if (scene) said = subtitles(*scene, *shots, first->frames);
+      if (scene)
+        said = subtitles(*scene, *shots, first->frames,
+                         joining.instead ? decltype(scene->passed){} : passed_marks(*scene));
       spec.captions = said.captions;
       if (!joining.instead) spec.chapters = said.chapters;
       writer.emplace(movie, spec);

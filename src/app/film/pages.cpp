@@ -13,6 +13,7 @@
 #include "app/run/plots.h"
 #include "app/run/simulation.h"
 #include "app/run/trouble.h"
+#include "draw/picture/prose.h"
 #include "media/error.h"
 #include "media/file.h"
 #include "page/page.h"
@@ -40,7 +41,7 @@ int film_pages(const scene::Scene& scene, const Shots& shots, const std::string&
   Simulation simulation(scene, shots, ahead, {.frames = 1});
   FrameRenderer artist(scene, ahead, options.context);
   const double aspect = double(scene.film.width) / scene.film.height;
-  page::Pages pages({.width = kSlide, .title = scene.look.title}, aspect);
+  page::Pages pages({.width = kSlide, .title = draw::in_letters(scene.look.title)}, aspect);
   Progress progress(options.progress, path, shots.size(), 1 / sim::value(shots.fps()));
   std::int64_t done = 0;
   while (const auto take = simulation.next()) {

@@ -18,6 +18,8 @@
 #include "app/console/interrupt.h"
 #include "app/run/compared.h"
 #include "app/run/trouble.h"
+#include "draw/page/measure.h"
+#include "draw/picture/prose.h"
 #include "scene/complaints.h"
 
 namespace obscura::app {
@@ -92,12 +94,37 @@ std::string wall(const sim::SceneInfo& cast, int index) {
 // "at 3 m/s to the right and up"
 std::string motion(const sim::Vec3& v, const sim::SceneInfo& cast) {
   const int dimension = cast.dimension;
-  const double speed = v.norm() > kNoMotion * cast.scale ? v.norm() : 0;
+  const double speed = v.norm();
   std::vector<std::string> way;
   if (dimension == 2 && std::abs(v.x()) > 0.3 * speed)
     way.emplace_back(v.x() > 0 ? "to the right" : "to the left");
   if (std::abs(v.y()) > 0.3 * speed) way.emplace_back(v.y() > 0 ? "up" : "down");
   return fmt::format("at {} m/s{}{}", numeral(speed), way.empty() ? "" : " ", fmt::join(way, " and "));
+}
+
+// "moves at 3 m/s to the right", "does not move"
+std::string moves(const sim::Vec3& v, const sim::SceneInfo& cast) {
+  return v.norm() > kNoMotion * cast.scale ? "moves " + motion(v, cast) : "does not move";
+}
+
+// "a, b and c"
+std::string together(std::vector<std::string> all) {
+  if (all.empty()) return "";
+  const std::string last = all.back();
+  all.pop_back();
+  return all.empty() ? last : fmt::format("{} and {}", fmt::join(all, ", "), last);
+}
+
+// title and subtitle of a scene
+std::string headline(const draw::Look& look) {
+  return draw::in_letters(look.title) +
+         (look.subtitle.empty() ? "." : ": " + draw::in_letters(look.subtitle) + ".");
+}
+
+// "normal force": a quantity as the table of quantities calls it
+std::string words_of(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
 }
 
 std::string count(std::size_t n, const char* one, const char* many) {
@@ -149,10 +176,35 @@ std::string listed(const sim::SceneInfo& cast) {
                                 [](const auto& joint) { return joint.kind != sim::JointKind::wire; }));
   if (joints > 0) all.push_back(count(joints, "joint", "joints"));
   if (!cast.rails.empty()) all.push_back(count(cast.rails.size(), "track", "tracks"));
-  if (all.empty()) return "nothing";
-  const std::string last = all.back();
-  all.pop_back();
-  return all.empty() ? last : fmt::format("{} and {}", fmt::join(all, ", "), last);
+  return all.empty() ? "nothing" : together(all);
+}
+
+// what arrows and plots of a film show
+std::vector<std::string> shown(const scene::Film& film, const sim::SceneInfo& cast) {
+  std::vector<std::pair<int, std::vector<std::string>>> bodies;
+  for (const draw::Marks::Vector& each : film.marks.vectors) {
+    if (each.body < 0) continue;
+    auto of =
+        std::find_if(bodies.begin(), bodies.end(), [&](const auto& it) { return it.first == each.body; });
+    if (of == bodies.end()) of = bodies.insert(of, {each.body, {}});
+    std::string what = "position";
+    for (const std::string& name : draw::arrows())
+      if (draw::measure(name)->arrow == each.quantity) what = words_of(name);
+    if (std::find(of->second.begin(), of->second.end(), what) == of->second.end()) of->second.push_back(what);
+  }
+  std::vector<std::string> all;
+  for (const auto& [body, quantities] : bodies)
+    if (all.size() < kToldSingly)
+      all.push_back(fmt::format("Arrows show {} of {}.", together(quantities), called(cast, body)));
+  for (const draw::Chart& chart : film.charts) {
+    std::vector<std::string> quantities, of;
+    for (const std::string& each : chart.quantities) quantities.push_back(words_of(each));
+    for (const int body : chart.bodies) of.push_back(called(cast, body));
+    all.push_back(fmt::format("A plot shows {}{} over {}.", together(quantities),
+                              of.empty() ? "" : " of " + together(of),
+                              chart.against.empty() ? "time" : words_of(chart.against)));
+  }
+  return all;
 }
 
 struct Impact {
@@ -170,6 +222,8 @@ class Account {
     soft_ = kSoft * std::sqrt((g > 0 ? g : 9.81) * std::max(cast.scale, 1e-9));
   }
   void read(const sim::Snapshot& now);
+  /// What the run's conditions did.
+  void heed(const std::vector<sim::RunEvent>& events);
   std::vector<std::string> sentences() const;
   std::vector<Happening> happenings() const;
 
@@ -187,13 +241,13 @@ class Account {
     return each.other >= 0 ? called(cast_, each.other) : wall(cast_, each.wall);
   }
 
-  // a bead at a wire's end goes on without it, all else breaks
+  // a bead at a wire's end goes on without it, conditions let joints go, all else breaks
   std::string parting(int joint) const {
     const sim::SceneInfo::Joint& it = cast_.joints[std::size_t(joint)];
     const std::string name = scene::one_line(it.name);
     return it.kind == sim::JointKind::wire && it.a >= 0
                ? fmt::format("{} leaves {}", called(cast_, it.a), name)
-               : fmt::format("joint {} breaks", name);
+               : fmt::format("joint {} {}", name, parted_.contains(joint) ? "is let go" : "breaks");
   }
 
   const scene::Scene& scene_;
@@ -202,8 +256,10 @@ class Account {
   std::optional<sim::Snapshot> first_, last_;
   std::vector<Impact> impacts_;
   std::vector<Extremes> bodies_;
-  std::vector<std::optional<double>> rest_;     // since when
-  std::vector<std::pair<double, int>> broken_;  // joints
+  std::vector<std::optional<double>> rest_;                         // since when
+  std::vector<std::pair<double, int>> broken_;                      // joints
+  std::set<int> parted_;                                            // of them those that conditions let go
+  std::vector<std::pair<std::string, std::vector<double>>> marks_;  // by their names, in the order of time
   std::set<Pair> touching_;
 };
 
@@ -265,17 +321,33 @@ void Account::read(const sim::Snapshot& now) {
   last_ = now;
 }
 
+void Account::heed(const std::vector<sim::RunEvent>& events) {
+  for (const sim::RunEvent& event : events) {
+    for (const std::string& mark : event.marks) {
+      auto of = std::find_if(marks_.begin(), marks_.end(), [&](const auto& it) { return it.first == mark; });
+      if (of == marks_.end()) of = marks_.insert(of, {mark, {}});
+      of->second.push_back(sim::value(event.time));
+    }
+    std::visit(
+        [&](const auto& world) {
+          for (const auto& action : world.model.whens[std::size_t(event.when)].actions)
+            if (action.what == std::decay_t<decltype(action)>::Do::part)
+              parted_.insert(action.of.begin(), action.of.end());
+        },
+        scene_.world);
+  }
+}
+
 std::vector<std::string> Account::beginning() const {
   std::vector<std::string> all;
-  if (!scene_.look.title.empty())
-    all.push_back(scene_.look.title +
-                  (scene_.look.subtitle.empty() ? "." : ": " + scene_.look.subtitle + "."));
+  if (!scene_.look.title.empty()) all.push_back(headline(scene_.look));
   const double g = cast_.gravity.norm();
   all.push_back(fmt::format("In {} there {} {}{}.", cast_.dimension == 2 ? "the plane" : "space",
                             moving(cast_).size() == 1 ? "is" : "are", listed(cast_),
                             g > 0          ? fmt::format("; gravity is {} m/s²", numeral(g))
                             : cast_.forces ? ", without the room's gravity but with forces of the scene"
                                            : "; there is no gravity"));
+  for (std::string& sentence : shown(scene_.film, cast_)) all.push_back(std::move(sentence));
   const std::vector<int> bodies = moving(cast_);
   if (bodies.size() > kToldSingly) {
     std::size_t resting = 0;
@@ -335,14 +407,28 @@ std::vector<std::string> Account::events() const {
   for (std::size_t i = 0; i < broken_.size() && i < kToldSingly; ++i)
     told.emplace_back(broken_[i].first,
                       fmt::format("At {} {}.", when(broken_[i].first), parting(broken_[i].second)));
-  if (broken_.size() > kToldSingly) told.emplace_back(1e300, fmt::format("{} joints break.", broken_.size()));
-  for (const draw::Caption& caption : scene_.film.titles.captions) {
-    const double at = caption.shown.start ? caption.shown.start->time : 0;
+  if (broken_.size() > kToldSingly)
+    told.emplace_back(1e300, fmt::format("{} joints {}.", broken_.size(),
+                                         parted_.size() >= broken_.size() ? "are let go" : "break"));
+  for (const auto& [name, times] : marks_)
+    told.emplace_back(
+        times.front(),
+        times.size() == 1
+            ? fmt::format("At {} is the mark \"{}\".", when(times.front()), scene::one_line(name))
+            : fmt::format("The mark \"{}\" comes {} times, first at {}, last at {}.", scene::one_line(name),
+                          times.size(), when(times.front()), when(times.back())));
+  const auto says = [&](const std::optional<draw::Cue>& start, const std::string& words) {
+    const double at = start ? start->time : 0;
     // what waits for a mark that does not come is not shown
     if (at <= last_->time)
-      told.emplace_back(at,
-                        fmt::format("The film says at {}: \"{}\"", when(at), scene::one_line(caption.text)));
-  }
+      told.emplace_back(at, fmt::format("The film says at {}: \"{}\"", when(at), scene::one_line(words)));
+  };
+  for (const draw::Caption& caption : scene_.film.titles.captions)
+    says(caption.shown.start, draw::in_letters(caption.text));
+  // of labels those that come at an instant
+  for (const draw::Marks::Label& label : scene_.film.marks.labels)
+    if (label.shown.start && label.quantity.empty())
+      says(label.shown.start, draw::formula_in_letters(label.text));
   std::stable_sort(told.begin(), told.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::string> all;
   for (auto& [at, sentence] : told) all.push_back(std::move(sentence));
@@ -390,9 +476,9 @@ std::vector<std::string> Account::ending() const {
       else if (since)
         all.push_back(capital(fmt::format("{} stays at rest.", called(cast_, body))));
       else
-        all.push_back(fmt::format("At the end, at {}, {} is at {} and moves {}.", when(last_->time),
+        all.push_back(fmt::format("At the end, at {}, {} is at {} and {}.", when(last_->time),
                                   called(cast_, body), whereabouts(it.position, cast_),
-                                  motion(it.velocity, cast_)));
+                                  moves(it.velocity, cast_)));
     }
   }
   const double before = first_->energies.total(), after = last_->energies.total();
@@ -441,7 +527,7 @@ void sort(std::vector<Happening>& events) {
 Story story(const scene::Scene& scene) {
   if (std::vector<Ahead::Run> runs = compared(scene); !runs.empty()) {
     Story all;
-    if (!scene.look.title.empty()) all.sentences.push_back(scene.look.title + ".");
+    if (!scene.look.title.empty()) all.sentences.push_back(draw::in_letters(scene.look.title) + ".");
     all.sentences.push_back(fmt::format("The film shows {} runs {} each other.", runs.size(),
                                         scene.film.over ? "over" : "beside"));
     for (Ahead::Run& run : runs) {
@@ -479,6 +565,7 @@ Story story(const scene::Scene& scene) {
     for (std::int64_t k = 0; k <= steps && !trouble; k += stride) read(last = sim::rational(k) / run->rate());
     if (!trouble && last < scene.duration) read(scene.duration);
   }
+  account.heed(run->events());
   Story all{account.sentences(), account.happenings()};
   for (const sim::RunEvent& event : run->events())
     for (const std::string& mark : event.marks)
@@ -494,8 +581,7 @@ Story story(const scene::Scene& scene) {
 
 std::string picture_text(const scene::Scene& scene, const sim::SceneInfo& cast, const sim::Snapshot& now) {
   if (scene.look.title.empty()) return instant_text(cast, now);
-  return scene.look.title + (scene.look.subtitle.empty() ? ". " : ": " + scene.look.subtitle + ". ") +
-         instant_text(cast, now);
+  return headline(scene.look) + " " + instant_text(cast, now);
 }
 
 std::string instant_text(const sim::SceneInfo& cast, const sim::Snapshot& now) {
@@ -512,8 +598,7 @@ std::string instant_text(const sim::SceneInfo& cast, const sim::Snapshot& now) {
   for (const int body : bodies) {
     const sim::Snapshot::Body& it = now.bodies[std::size_t(body)];
     add(capital(fmt::format("{} is at {} and {}.", called(cast, body), whereabouts(it.position, cast),
-                            it.velocity.norm() > kNoMotion * cast.scale ? "moves " + motion(it.velocity, cast)
-                                                                        : std::string("does not move"))));
+                            moves(it.velocity, cast))));
   }
   return all;
 }

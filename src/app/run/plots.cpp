@@ -23,6 +23,7 @@ namespace obscura::app {
 namespace {
 
 constexpr std::int64_t kPoints = 480;   // of a line
+constexpr std::int64_t kFewSteps = 4;   // fewer steps than points by so much: steps are shown
 constexpr std::int64_t kPixels = 1920;  // of a line in a film
 
 // the values of a run at one more instant
@@ -157,10 +158,26 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
     const auto run = scene.shown_run();
     run->heed(interrupted);
     const sim::Rational stride = (wanted.to - wanted.from) / sim::rational(kPoints);
+    bool touched = false;
+    const draw::Plot empty = plot;
     for (std::int64_t i = 0; i <= kPoints; ++i) {
       const sim::Rational t = i < kPoints ? wanted.from + sim::rational(i) * stride : wanted.to;
       const sim::Snapshot now = moment(*run, t, scene);
+      touched = touched || !now.contacts.empty();
       add(run->scene_info(), now, wanted, lines, plot);
+    }
+    // few steps that nothing interrupts: parts of steps, which a scheme of low order takes otherwise, would
+    // be kinks between them
+    const std::int64_t first = sim::floor(wanted.from * run->rate()) + 1,
+                       last = sim::ceil(wanted.to * run->rate());
+    if (!touched && last - first < kPoints / kFewSteps) {
+      plot = empty;
+      const auto again = scene.shown_run();
+      again->heed(interrupted);
+      add(again->scene_info(), moment(*again, wanted.from, scene), wanted, lines, plot);
+      for (std::int64_t k = first; k < last; ++k)
+        add(again->scene_info(), moment(*again, sim::rational(k) / run->rate(), scene), wanted, lines, plot);
+      add(again->scene_info(), moment(*again, wanted.to, scene), wanted, lines, plot);
     }
     if (wanted.against.empty())
       plot.marks = marks;

@@ -49,6 +49,14 @@ scene::RunMarks marks_of_run(const scene::Scene& scene) {
   return found;
 }
 
+std::vector<std::pair<std::string, sim::Rational>> in_order(const scene::RunMarks& marks) {
+  std::vector<std::pair<std::string, sim::Rational>> all;
+  for (const auto& [name, instants] : marks.instants)
+    for (const sim::Rational& instant : instants) all.emplace_back(name, instant);
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return all;
+}
+
 }  // namespace
 
 scene::Scene with_run_marks(scene::Scene scene) {
@@ -60,7 +68,13 @@ scene::Scene with_run_marks(scene::Scene scene) {
           mark);
   scene::Scene put = scene.again(scene.sets, &found);
   put.marks = scene.marks;
+  put.passed = in_order(found);
   return put;
+}
+
+std::vector<std::pair<std::string, sim::Rational>> passed_marks(const scene::Scene& scene) {
+  if (scene.marked || scene.trajectory || made_marks(scene).empty()) return scene.passed;
+  return in_order(marks_of_run(scene));
 }
 
 std::vector<std::string> made_marks(const scene::Scene& scene) {

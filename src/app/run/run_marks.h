@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "scene/scene.h"
@@ -12,6 +13,10 @@ namespace obscura::app {
 /// is run once, where its film or figure asks for that. Says which marks the run does not come to. Throws
 /// Interrupted.
 scene::Scene with_run_marks(scene::Scene scene);
+
+/// The marks that a scene's run comes to, in the order of time, s; it is run once, where it makes marks and
+/// was not run before. Throws Interrupted.
+std::vector<std::pair<std::string, sim::Rational>> passed_marks(const scene::Scene& scene);
 
 /// The marks that conditions of the scene make.
 std::vector<std::string> made_marks(const scene::Scene& scene);

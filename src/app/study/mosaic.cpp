@@ -16,6 +16,7 @@
 #include "app/film/output.h"
 #include "app/run/shots.h"
 #include "app/run/simulation.h"
+#include "draw/picture/prose.h"
 #include "draw/picture/theme.h"
 #include "draw/picture/type.h"
 #include "gl/renderer.h"
@@ -187,7 +188,7 @@ int mosaic_movie(std::vector<Tile> tiles, const std::string& out, const MosaicOp
   const scene::Scene& first = tiles.front().scene;
   media::MovieSpec spec = movie_spec(first);
   media::check(out, spec);
-  spec.tags = {{"Software", "obscura " OBSCURA_VERSION}, {"Title", first.look.title}};
+  spec.tags = {{"Software", "obscura " OBSCURA_VERSION}, {"Title", draw::in_letters(first.look.title)}};
   media::make_folder_of(out);
   const Shots shots = Shots::film(first.duration, first.film.fps, first.film.speed);
   const Mosaic mosaic(int(tiles.size()), spec.width, spec.height);

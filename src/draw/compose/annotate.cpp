@@ -23,6 +23,7 @@ constexpr double kFilmType = 24 / 8.5;  // page units a point at the weight 1, a
 constexpr double kCone = 0.5;           // of the picture's shorter side: how long a friction cone is at most
 constexpr double kAxes = 0.36;          // of the picture's shorter side: axes in space
 constexpr double kAslant = 0.05;        // sine of an angle: nearer to each other two arrows are in line
+constexpr double kHaloInPrint = 1.6;    // points: from the middle of an arrow to the edge of its halo
 constexpr double kTail = 1.7;           // widths of an arrow: radius of the dot where it begins
 constexpr double kFull = 0.28;      // of an arrow's growth: from here on its words are as strong as others
 constexpr double kOutOfBall = 0.6;  // of a ball's radius: how far beyond it words of an arrow within it end
@@ -88,6 +89,12 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   arrows_.push_back(arrows[0]), inks_.push_back(ink);
   const Point end = film() ? arrows[0].tip : tip;
   placing_.avoid(tail, end, 4);
+  // in print its halo, too: words that touch it look cut
+  if (const Point way = end - tail; !film() && way.norm() > 0)
+    for (const double side : {1.0, -1.0}) {
+      const Point off = side * kHaloInPrint * point_ * Point(-way.y(), way.x()) / way.norm();
+      placing_.avoid(tail + off, end + off, 2);
+    }
   // words come and go with the arrow, but are as strong as others while it is there, however small it is
   if (film()) fade(label, (arrows[0].grow - kSmallest) / (kFull - kSmallest));
   // those of one that ends within its ball stand where it would leave it; which place they have is chosen for
@@ -449,7 +456,10 @@ void Notes::point(int index, const Marks::Point& point) {
   const Color ink = inked(point.color.value_or(colours_.ink), colours_);
   if (point.dot) dots_.push_back({at, ink, hang_});
   const Formula f = formula(point.label, type_, ink);
-  placing_.avoid(at - Point(dot_radius_, 0), at + Point(dot_radius_, 0), 8);
+  // its dot, and the halo around that
+  const double clear = dot_radius_ + 1.2 * point_;
+  placing_.avoid(at - Point(clear, 0), at + Point(clear, 0), 8);
+  if (!film()) placing_.avoid(at - Point(0, clear), at + Point(0, clear), 8);
   word({WordKey::point, index}, f, Placing::around(at, dot_radius_ + gap_, size(f), point_), at);
 }
 

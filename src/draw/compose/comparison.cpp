@@ -147,17 +147,18 @@ Picture Comparison::depict(const std::vector<Instant>& runs, double time, double
       for (std::size_t i = 0; i < parts.size(); ++i)
         if (seen[i]) list->part = int(i), add_panel(*seen[i], panels_[i], *list);
       list->part = 0;
-      for (const Text& text : layout_.words) list->add(text);
+      draw_words(layout_, *list);
       charts_.draw_still(*list);
       const double w = layout_.weight;
       for (std::size_t i = 0; i < parts.size(); ++i) {
         const double size = kName * w * look_.type_scale;
-        list->add(Text{{panels_[i].x + kPlateAround * w, panels_[i].y - kNameRise * w * look_.type_scale},
-                       Align::left,
-                       {{.text = fitted(runs_[i].name, Face::bold, size, panels_[i].width),
-                         .face = Face::bold,
-                         .size = size,
-                         .color = runs_[i].color}}});
+        const std::string name = fitted(runs_[i].name, Face::bold, size, panels_[i].width);
+        const Point at(panels_[i].x + kPlateAround * w, panels_[i].y - kNameRise * w * look_.type_scale);
+        if (contains_mathematics(name))
+          draw::add(prose(name, Face::bold, size, runs_[i].color), at, *list);
+        else
+          list->add(Text{
+              at, Align::left, {{.text = name, .face = Face::bold, .size = size, .color = runs_[i].color}}});
       }
       set_decimal_mark(*list, look_.decimal);
       still_->list = std::move(list), still_->parts = std::move(seen);

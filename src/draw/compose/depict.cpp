@@ -39,7 +39,10 @@ void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, 
   draw([&] { draw_brackets(stage, view, now, list); });
   draw([&] { draw_ways(stage, view, now, list); });
   draw([&] { draw_tracks(stage, view, now, list); });
-  draw([&] { draw_rails(stage, view, now, list); });
+  draw([&] {
+    draw_rails(stage, view, now, list);
+    draw_arms(stage, view, now, list);
+  });
   draw([&] { draw_springs(stage, view, now, false, list); });
   draw([&] { draw_boxes(stage, view, now, list); });
   draw([&] { draw_polygons(stage, view, now, list); });

@@ -20,6 +20,8 @@ constexpr double kMillimetre = 72 / 25.4;
 constexpr double kNormal = 9 * 72 / 25.4;  // a unit normal: 9 mm
 constexpr double kAngle = 13;              // radius of an arc
 constexpr double kOffHatching = 2.5;       // from it to the words of a film
+constexpr double kBracketHalf = 24;        // page units: half the width of what something hangs from
+constexpr double kMarginInPrint = 0.25;    // around words, of their height
 constexpr double kCovered = 60;            // the cost of words over a body
 constexpr double kOnOutline = 8;           // of each unit of a body's outline under words of a film
 constexpr double kOnTrail = 0.8;           // of each unit of a trail or path under words
@@ -39,7 +41,7 @@ Notes::Notes(const sim::SceneInfo& cast, const Palette& colours, const Projectio
       now_(now),
       how_(how),
       list_(list),
-      placing_(projection.window()),
+      placing_(projection.window(), how.plan || how.survey ? 0.12 : kMarginInPrint),
       point_(how.lettering.point),
       arrow_(how.lettering.arrow),
       type_(kType * point_),
@@ -229,6 +231,20 @@ void Notes::avoid_areas() {
     }
   avoid_springs();
   avoid_joints();
+  // what is made fast to the room has a bracket there
+  if (!view_.view() || !film()) return;
+  const double half = kBracketHalf * how_.lettering.weight;
+  const auto bracket = [&](int body, const Vec3& at) {
+    for (const double up : {0.0, 0.5, 1.0})
+      if (body < 0)
+        placing_.avoid(view_.page(at) - Point(half, up * half / 2),
+                       view_.page(at) + Point(half, -up * half / 2), 4);
+  };
+  for (std::size_t i = 0; i < cast_.springs.size(); ++i)
+    bracket(cast_.springs[i].a, now_.springs[i].a), bracket(cast_.springs[i].b, now_.springs[i].b);
+  for (std::size_t i = 0; i < cast_.joints.size(); ++i)
+    if (cast_.joints[i].places.empty() && !now_.joints[i].broken)
+      bracket(cast_.joints[i].a, now_.joints[i].a), bracket(cast_.joints[i].b, now_.joints[i].b);
 }
 
 void Notes::avoid_joints() {

@@ -17,6 +17,7 @@ constexpr double kTitle = 34, kSubtitle = 26.5, kClock = 28.5;   // em
 constexpr double kStrip = 76, kSecondLine = 36, kBaseline = 50;  // heights
 constexpr double kPageMargin = 36, kTitleGap = 18, kClockGap = 44;
 constexpr double kSmallestType = 0.82;                 // before the caption takes another line
+constexpr double kLetters = 0.25;                      // em: how far letters reach below their line
 constexpr double kTitleLine = 42, kSubtitleLine = 34;  // of words in several lines
 constexpr std::size_t kMostRows = 3;
 constexpr double kRounding = 1e-9;
@@ -68,6 +69,7 @@ struct Setting {
   int lines = 1;
   double span = 0;  // width they take
   std::vector<std::string> title{}, subtitle{};
+  double deep = 0;  // page units: how much farther down the title's mathematics reaches than its letters
 
   /// How high they are, in units of weight.
   double height(double type) const {
@@ -92,7 +94,9 @@ Setting set_words(const Look& look, double weight, double room, double page) {
   weight *= look.type_scale;
   const double title = width_of(look.title, Face::bold, kTitle * weight);
   const double subtitle = width_of(look.subtitle, Face::medium, kSubtitle * weight);
-  const double clock = look.clock ? width_of(clock_text(88.88), Face::medium, kClock * weight, true) : 0;
+  const double clock = look.clock ? width_of(clock_text(88.88), Face::medium, kClock * weight, true) +
+                                        (look.badge ? badge_room(weight) : 0)
+                                  : 0;
   const double gap = weight * kClockGap;
   const double top = title + (title > 0 && clock > 0 ? gap : 0) + clock;
   const double all =
@@ -111,6 +115,10 @@ Setting set_words(const Look& look, double weight, double room, double page) {
   const double beside = clock > 0 ? clock * found.size + kClockGap * unit : 0;
   found.title = rows_of(look.title, Face::bold, kTitle * unit, span - beside);
   if (lines == 2) found.subtitle = rows_of(look.subtitle, Face::medium, kSubtitle * unit, span);
+  if (lines == 2 && !found.title.empty() && contains_mathematics(found.title.back())) {
+    const double size = kTitle * unit;
+    found.deep = std::max(0.0, prose(found.title.back(), Face::bold, size, {}).descent - kLetters * size);
+  }
   return found;
 }
 
@@ -121,14 +129,17 @@ void write_caption(Layout& layout, const Look& look, const Palette& colours, con
   const double span = right - left;
   double clock = 0;
   if (look.clock) {
-    clock = width_of(clock_text(88.88), Face::medium, kClock * unit, true) + kClockGap * unit;
+    clock = width_of(clock_text(88.88), Face::medium, kClock * unit, true) + kClockGap * unit +
+            (look.badge ? badge_room(unit) : 0);
     layout.clock = {
         {right, baseline},
         Align::right,
         {{.text = "", .face = Face::medium, .size = kClock * unit, .color = colours.ink, .tabular = true}}};
   }
   const auto write = [&](const std::string& words, Face face, double size, Color color, double x) {
-    if (!words.empty())
+    if (contains_mathematics(words))
+      layout.prose.emplace_back(prose(words, face, size, color), Point(x, baseline));
+    else if (!words.empty())
       layout.words.push_back(
           {{x, baseline}, Align::left, {{.text = words, .face = face, .size = size, .color = color}}});
   };
@@ -151,7 +162,7 @@ void write_caption(Layout& layout, const Look& look, const Palette& colours, con
     if (i > 0) baseline += type * kTitleLine;
     write(setting.title[i], Face::bold, kTitle * unit, colours.ink, left);
   }
-  baseline += type * kSecondLine;
+  baseline += type * kSecondLine + setting.deep;
   for (std::size_t i = 0; i < setting.subtitle.size(); ++i) {
     if (i > 0) baseline += type * kSubtitleLine;
     write(setting.subtitle[i], Face::medium, kSubtitle * unit, colours.quiet, left);
@@ -162,8 +173,18 @@ void write_caption(Layout& layout, const Look& look, const Palette& colours, con
 
 double page_weight(double aspect) { return std::min(1.0, std::sqrt(1080 * aspect / 1440)); }
 
+double badge_room(double type) {
+  return width_of("0.88 ×", Face::medium, kBadge * type, true) + 2.1 * kBadge * type;
+}
+
+void draw_words(const Layout& layout, List& list) {
+  for (const Text& text : layout.words) list.add(text);
+  for (const auto& [line, at] : layout.prose) add(line, at, list);
+}
+
 double width_of(const std::string& words, Face face, double size, bool tabular) {
   if (words.empty()) return 0;
+  if (contains_mathematics(words)) return prose(words, face, size, {}).width;
   return shape({{0, 0}, Align::left, {{.text = words, .face = face, .size = size, .tabular = tabular}}})
       .width;
 }
@@ -189,10 +210,13 @@ bool outside(const Rect& r, const Point& p, double reach) {
 std::string fitted(const std::string& words, Face face, double size, double width) {
   // what was made to fit exactly does so but for rounding
   if (words.empty() || width_of(words, face, size) <= width * (1 + kRounding)) return words;
-  // the ends of its characters
+  // the ends of its characters; mathematics is one
   std::vector<std::size_t> ends;
-  for (std::size_t i = 1; i <= words.size(); ++i) {
-    if (i == words.size() || (static_cast<unsigned char>(words[i]) & 0xC0) != 0x80) ends.push_back(i);
+  for (const Phrase& phrase : phrases(words)) {
+    const std::size_t close = phrase.begin + phrase.text.size();
+    if (phrase.mathematics) ends.push_back(close + 1);
+    for (std::size_t i = phrase.begin + 1; i <= close && !phrase.mathematics; ++i)
+      if (i == words.size() || (static_cast<unsigned char>(words[i]) & 0xC0) != 0x80) ends.push_back(i);
   }
   auto with_ellipsis = [&](std::size_t characters) {
     std::size_t end = characters == 0 ? 0 : ends[characters - 1];
@@ -212,9 +236,20 @@ std::string fitted(const std::string& words, Face face, double size, double widt
 
 std::vector<std::string> wrapped(const std::string& words, Face face, double size, double width) {
   std::vector<std::string> lines{""};
+  const std::vector<Phrase> all = phrases(words);
+  // spaces of mathematics do not end a line
+  const auto space_from = [&](std::size_t at) {
+    for (std::size_t i = words.find_first_of(" \n", at); i != words.npos;
+         i = words.find_first_of(" \n", i + 1))
+      if (std::none_of(all.begin(), all.end(), [&](const Phrase& phrase) {
+            return phrase.mathematics && i >= phrase.begin && i < phrase.begin + phrase.text.size();
+          }))
+        return i;
+    return words.size();
+  };
   std::size_t at = 0;
   while (at < words.size()) {
-    const std::size_t end = std::min(words.find_first_of(" \n", at), words.size());
+    const std::size_t end = space_from(at);
     const std::string word = words.substr(at, end - at);
     const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
     if (!lines.back().empty() && width_of(longer, face, size) > width)
@@ -235,7 +270,7 @@ double lay_caption(Layout& layout, const Look& look) {
   const Setting setting = set_words(look, w, page, page);
   write_caption(layout, look, palette(look.theme), setting, (layout.width - page) / 2,
                 (layout.width + page) / 2, 0);
-  return w * setting.height(look.type_scale);
+  return w * setting.height(look.type_scale) + setting.deep;
 }
 
 Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camera, const Extent& extent,
@@ -261,17 +296,19 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
     return std::min(wide / size.x(), high / size.y());
   };
 
+  const bool still = camera.keys.empty() && camera.follow.empty();
   // the caption's lines depend on the room's width, which depends on the strip's height
   double strip = w * kPageMargin;
   Setting setting;
   const double page = layout.width - 2 * std::max(w * kPageMargin, 0.045 * layout.width);
   if (layout.caption) {
-    auto room = [&] { return world.closed ? scale(strip) * size.x() + 2 * w * kWallLine : page; };
+    // a camera of the scene's own shows the room in another size
+    auto room = [&] { return world.closed && still ? scale(strip) * size.x() + 2 * w * kWallLine : page; };
     strip = w * look.type_scale * kStrip;
     setting = set_words(look, w, room(), page);
-    for (int k = 0; k < 3 && setting.height(look.type_scale) * w > strip; ++k) {
+    for (int k = 0; k < 3 && setting.height(look.type_scale) * w + setting.deep > strip; ++k) {
       const int lines = setting.lines;
-      strip = w * setting.height(look.type_scale);
+      strip = w * setting.height(look.type_scale) + setting.deep;
       setting = set_words(look, w, room(), page);
       // a lower room is narrower: what took two lines does so still
       if (lines != 2 || setting.lines == 2) continue;
@@ -285,7 +322,6 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
   // height that is left over goes above and below in equal parts; with a camera that moves, or an unbounded
   // world, the caption stays at the top
   const double spare = layout.height - strip - 2 * band - w * kPageMargin - layout.scale * size.y();
-  const bool still = camera.keys.empty() && camera.follow.empty();
   const double above = world.closed && still ? spare / 2 : 0;
   layout.clipped = !(world.closed && still);
   const double top = layout.caption ? strip + above - 0.12 * w * kStrip : 0;

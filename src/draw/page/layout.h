@@ -1,9 +1,11 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "draw/picture/convex.h"
+#include "draw/picture/prose.h"
 #include "draw/picture/theme.h"
 #include "draw/picture/view.h"
 
@@ -24,7 +26,9 @@ struct Layout {
   bool closed = false;                   // the walls close
   bool caption = false;
   std::vector<Text> words;  // title and subtitle
-  Text clock;               // its span's text is the instant's
+  std::vector<std::pair<Formula, Point>>
+      prose;   // those of their lines that have mathematics, at their left ends
+  Text clock;  // its span's text is the instant's
 };
 
 /// The fitted region: the room if its walls close, else the extent, and the ground near it.
@@ -46,7 +50,16 @@ double lay_caption(Layout& layout, const Look& look);
 /// The weight of lines and type on a page of this aspect.
 double page_weight(double aspect);
 
-/// How wide words are set, page units; `tabular`: with figures of equal width.
+/// How much room the badge of a film's speed takes before the clock, page units, where `type` is the weight
+/// of type.
+inline constexpr double kBadge = 23;  // em
+double badge_room(double type);
+
+/// Draws title and subtitle.
+void draw_words(const Layout& layout, List& list);
+
+/// How wide words are set, and the mathematics between dollars in them, page units; `tabular`: with figures
+/// of equal width.
 double width_of(const std::string& words, Face face, double size, bool tabular = false);
 
 /// "t = 3.42 s"

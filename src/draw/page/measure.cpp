@@ -181,6 +181,17 @@ std::string spoken(std::string name) {
   return "\"" + name + "\"" + number;
 }
 
+namespace {
+
+// of an axis: beside others a line of the "normal force" is called "normal"
+std::string title(const Measure& measure) {
+  std::string words(measure.name);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words.starts_with(std::string(measure.label) + " ") ? words : measure.label;
+}
+
+}  // namespace
+
 Plot empty_plot(const Measured& measured, const Palette& colours, const sim::SceneInfo& cast,
                 const std::function<Color(int body)>& line_color,
                 const std::function<std::string(int body)>& called) {
@@ -202,12 +213,11 @@ Plot empty_plot(const Measured& measured, const Palette& colours, const sim::Sce
   tell_apart(plot);
   if (!measures.empty()) {
     const std::string all = symbol(measures[0]->unit);
-    plot.title = over_unit(
-        (measures.size() == 1 && measures[0]->name != "energy") || all.empty() ? measures[0]->label : all,
-        measures[0]->unit);
+    const bool own = (measures.size() == 1 && measures[0]->name != "energy") || all.empty();
+    plot.title = over_unit(own ? title(*measures[0]) : all, measures[0]->unit);
   }
   plot.range = measured.range;
-  if (const Measure* other = measure(measured.against)) plot.name = over_unit(other->label, other->unit);
+  if (const Measure* other = measure(measured.against)) plot.name = over_unit(title(*other), other->unit);
   return plot;
 }
 

@@ -49,16 +49,22 @@ bool inside(const std::vector<Point>& outline, const Point& p) {
   return !(left && right);
 }
 
+/// Which part of its half size a label in direction n is moved by: aslant it stands with its corner at the
+/// point.
+Point part_of_half(const Point& n) {
+  return (std::numbers::sqrt2 * n).cwiseMax(Point(-1, -1)).cwiseMin(Point(1, 1));
+}
+
 /// From a point to the middle of a label of `size` that just clears it in direction n.
 Point clear(const Point& n, double gap, const Point& size) {
-  return n * gap + Point(n.x() * size.x() / 2, n.y() * size.y() / 2);
+  return n * gap + part_of_half(n).cwiseProduct(size) / 2;
 }
 
 /// The same for a label that clears the whole line across n: no corner of it reaches over.
 Point clear_line(const Point& n, double gap, const Point& size) {
   const Point part = n.cwiseAbs();
   const double corner = (part.array() * (1 - part.array()) * size.array()).sum() / 2;
-  return clear(n, gap, size) + corner * n;
+  return n * (gap + corner) + n.cwiseProduct(size) / 2;
 }
 
 }  // namespace
@@ -98,8 +104,8 @@ double Placing::cost(const Rect& rect) const {
   return outside ? sum + 1e6 : sum;
 }
 
-Rect Placing::rect_of(const Point& size, const Candidate& c) {
-  const double margin = 0.12 * size.y();
+Rect Placing::rect_of(const Point& size, const Candidate& c) const {
+  const double margin = margin_ * size.y();
   return {c.center.x() - size.x() / 2 - margin, c.center.y() - size.y() / 2 - margin, size.x() + 2 * margin,
           size.y() + 2 * margin};
 }
@@ -156,6 +162,20 @@ std::vector<Placing::Candidate> Placing::along(const Point& tail, const Point& t
     }
     all.push_back({tip + clear(u, gap, size), ring + 1.5 * unit, false});
     ring += 8 * unit;
+  }
+  // where many arrows leave one body: beyond its outline
+  const double along = u.cwiseAbs().dot(size) / 2;
+  for (const double off : {36.0, 52.0, 70.0}) {
+    if (!fixed) break;
+    for (const double side : {1.0, -1.0}) {
+      for (const double part : {1.0, 0.4})
+        all.push_back(
+            {tail + part * (tip - tail) + clear_line(side * v, gap + off * unit, size), ring, true});
+      // beside its line, as of an arrow along the ground
+      all.push_back({tip + (gap + off * unit / 2 + along) * u + clear_line(side * v, gap, size), ring, true});
+    }
+    all.push_back({tip + clear(u, gap + off * unit / 2, size), ring, true});
+    ring += 6 * unit;
   }
   return all;
 }

@@ -11,7 +11,8 @@ namespace obscura::draw {
 /// leader line where they must stand farther off.
 class Placing {
  public:
-  explicit Placing(const Rect& page) : page_(page) {}
+  /// `margin`: how much room words want around them, of their height.
+  explicit Placing(const Rect& page, double margin = 0.12) : page_(page), margin_(margin) {}
 
   /// Lines that labels should not cover; a heavier line is avoided more.
   void avoid(const Point& a, const Point& b, double weight);
@@ -38,7 +39,7 @@ class Placing {
                                       double unit, bool fixed = false);
 
  private:
-  static Rect rect_of(const Point& size, const Candidate& candidate);
+  Rect rect_of(const Point& size, const Candidate& candidate) const;
   double cost(const Rect& rect) const;
   double lines(const Rect& rect) const;
 
@@ -52,6 +53,7 @@ class Placing {
     double weight;
   };
   Rect page_;
+  double margin_;
   std::vector<Line> lines_;
   std::vector<Area> areas_;
   std::vector<Rect> taken_;

@@ -11,11 +11,11 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kCardTitle = 62, kText = 32, kCaption = 32, kBadge = 23;  // em, page units at the weight 1
-constexpr double kLead = 1.35;                                             // of a line
-constexpr double kFoot = 26;            // from the page's edge to the captions
-constexpr double kCaptionFade = 0.2;    // s: captions come and go
-constexpr double kCaptionWidth = 0.86;  // of the page
+constexpr double kCardTitle = 62, kText = 32, kCaption = 32;  // em, page units at the weight 1
+constexpr double kLead = 1.35;                                // of a line
+constexpr double kFoot = 26;                                  // from the page's edge to the captions
+constexpr double kCaptionFade = 0.2;                          // s: captions come and go
+constexpr double kCaptionWidth = 0.86;                        // of the page
 
 /// The same number of lines, as even as can be.
 std::vector<std::string> balanced(const std::string& words, Face face, double size, double width) {
@@ -31,8 +31,13 @@ std::vector<std::string> balanced(const std::string& words, Face face, double si
 void centered(const std::vector<std::string>& lines, Face face, double size, double x, double& baseline,
               Color color, List& list) {
   for (const std::string& line : lines) {
-    list.add(
-        Text{{x, baseline}, Align::center, {{.text = line, .face = face, .size = size, .color = color}}});
+    if (contains_mathematics(line)) {
+      const Formula set = prose(line, face, size, color);
+      add(set, {x - set.width / 2, baseline}, list);
+    } else {
+      list.add(
+          Text{{x, baseline}, Align::center, {{.text = line, .face = face, .size = size, .color = color}}});
+    }
     baseline += kLead * size;
   }
 }
@@ -102,9 +107,10 @@ double covered(const Titles& titles, double film) {
   return 1 - u * u * (3 - 2 * u);
 }
 
-void draw_badge(double speed, const Rect& page, const Layout& layout, const Palette& colours, List& list) {
+void draw_badge(double speed, const Rect& page, const Layout& layout, double weight, const Palette& colours,
+                List& list) {
   // before the clock, or where that would be
-  const double weight = layout.weight, size = kBadge * weight, high = 1.5 * size, inset = 0.55 * size;
+  const double size = kBadge * weight, high = 1.5 * size, inset = 0.55 * size;
   double right = page.width - std::max(36 * weight, 0.045 * page.width), middle = 0.75 * size + 16 * weight;
   if (layout.caption && !layout.clock.spans.empty()) {
     const Span& clock = layout.clock.spans[0];
@@ -159,7 +165,7 @@ void draw_titles(const Titles& titles, const Layout& layout, double aspect, cons
   if (titles.empty()) return;
   const Rect page{0, 0, 1080 * aspect, 1080};
   const double weight = layout.weight, type = weight * titles.type_scale;
-  if (titles.badge && std::abs(speed - 1) > 0.005) draw_badge(speed, page, layout, colours, list);
+  if (titles.badge && std::abs(speed - 1) > 0.005) draw_badge(speed, page, layout, type, colours, list);
   draw_captions(titles, page, type, time, film, colours.ink, list);
   for (const Card& card : titles.cards)
     if (const double strength = opacity(card, film); strength > 0)

@@ -32,6 +32,7 @@ struct Look {
   Theme theme = Theme::paper;
   std::string title, subtitle;
   bool clock = true;    // the time at the right of the caption
+  bool badge = false;   // before it, how fast the film goes
   bool caption = true;  // the caption strip at all
   bool hatching = true;
   bool axes = true;                   // the frame of each box

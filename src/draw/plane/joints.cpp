@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "draw/picture/arms.h"
 #include "draw/picture/joint_look.h"
 #include "draw/picture/rope_way.h"
 #include "draw/plane/stage.h"
@@ -17,6 +18,7 @@ namespace {
 
 using sim::Vec3;
 
+constexpr double kArm = 16;   // page units: a joint farther from its body has a line to it
 constexpr double kStop = 9;   // page units: half a rail's end
 constexpr int kPieces = 24;   // of a rope that sags
 constexpr double kFar = 1e4;  // page units: a rail without an end
@@ -306,6 +308,15 @@ void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, 
       const Point half = kStop * weight * across;
       list.add({{at - half, width, color}, {at + half, width, color}}, Cap::butt);
     }
+  }
+}
+
+void draw_arms(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const double weight = stage.layout.weight, width = kRod * weight;
+  const Color color = stage.colours.spring;
+  for (const Arm& arm : arms(stage.cast, now, kArm * weight / view.scale)) {
+    list.of({Subject::What::joint, arm.joint});
+    list.add({{view.page(arm.from), width, color}, {view.page(arm.to), width, color}}, Cap::round);
   }
 }
 

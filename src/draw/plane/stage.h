@@ -146,6 +146,7 @@ std::optional<Color> track_color(const Look& look, const std::string& name);
 
 /// The rails of sliders, behind the bodies; rods and ropes, in front of boxes; pins, in front of all.
 void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+void draw_arms(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_pulleys(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_gears(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);

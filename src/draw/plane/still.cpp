@@ -203,7 +203,7 @@ void draw_still(const Stage& stage, const View& view, List& list) {
         list.add({{{0, w.y}, 1.4 * weight, rule}, {{w.width, w.y}, 1.4 * weight, rule}}, Cap::butt);
     }
   }
-  for (const Text& text : stage.layout.words) list.add(text);
+  draw_words(stage.layout, list);
   stage.charts.draw_still(list);
 }
 

@@ -226,7 +226,7 @@ void draw_space_still(const SpaceStage& stage, const std::vector<CameraProjectio
     for (const Text& text : stage.panels[i].words) list.add(text);
   }
   draw_seams(stage, list);
-  for (const Text& text : stage.layout.words) list.add(text);
+  draw_words(stage.layout, list);
   stage.charts.draw_still(list);
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "draw/picture/arms.h"
 #include "draw/picture/joint_look.h"
 #include "draw/picture/rope_way.h"
 #include "draw/space/space.h"
@@ -20,6 +21,7 @@ constexpr double kRise = 0.5;  // turns over which a coil leaves its axis
 constexpr int kNodes = 14;     // a turn
 constexpr double kEndOn = 7;   // amplitudes: a coil that looks shorter is narrower
 constexpr double kNarrow = 0.3;
+constexpr double kFarther = 16;  // page units: a joint farther from its body has a rod to it
 constexpr double kRail = 2.2;    // widths of a rod
 constexpr double kWithin = 0.7;  // of half a body's thickness: a joint in it
 
@@ -171,6 +173,11 @@ void add_links(SpaceFrame& s) {
     if (!mouse.pressed || mouse.body < 0) continue;
     add_coil(s, s.stage.hands[i], mouse.held, mouse.pointer, number);
     add_ball(s, mouse.held, kJoint * weight * metre, color, number);
+  }
+  for (const Arm& arm : arms(cast, s.now, kFarther * weight * metre)) {
+    const double radius = 0.5 * kRod * weight * metre;
+    add_tube(s, {arm.from, arm.to}, radius, color, number++);
+    s.rods.push_back({arm.from, arm.to, radius});
   }
 }
 
