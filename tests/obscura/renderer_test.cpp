@@ -196,7 +196,7 @@ TEST_F(Films, AChildThatLetsGoOfAMovieLeavesItToItsParent) {
     ::alarm(300);
     int wrong = 0;
     try {
-      movie->add({160, 90, black});
+      movie->add({160, 90, black, 0, 0, ""});
       wrong |= 1;
     } catch (const UsageError&) {
     }
