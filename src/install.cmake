@@ -7,6 +7,11 @@ include(CMakePackageConfigHelpers)
 # The public headers (docs/library.md), and what they include: no others are installed. obscura/obscura.h is the
 # interface; those of sim are of its component; the two others are deprecated.
 set(public obscura/obscura.h scene/scene.h app/film/pictures.h sim/step/run.h sim/step/stepper.h sim/step/playback.h sim/energy/energy.h)
+# of a header: the beginning of a declaration, and what to use
+set(deprecations
+    "scene/scene.h|Scene read(|Scene::read()"
+    "scene/scene.h|Scene parse(|Scene::parse()"
+    "app/film/pictures.h|std::vector<Pictured> pictures(|Renderer")
 if(OBSCURA_SUMS)
   list(APPEND public sim/math/sums.h sim/math/order.h)
 endif()
@@ -28,7 +33,24 @@ foreach(header IN LISTS OBSCURA_HEADERS)
   if(folder STREQUAL obscura)
     set(folder .)
   endif()
-  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/obscura/${folder})
+  set(installed ${header})
+  # to those outside what is to go says its successor
+  foreach(deprecation IN LISTS deprecations)
+    string(REPLACE "|" ";" deprecation "${deprecation}")
+    list(GET deprecation 0 of)
+    if(of STREQUAL header)
+      list(GET deprecation 1 declared)
+      list(GET deprecation 2 successor)
+      file(READ ${installed} text)
+      string(REPLACE "\n${declared}" "\n[[deprecated(\"${successor}, of obscura/obscura.h\")]] ${declared}" marked "${text}")
+      if(marked STREQUAL text)
+        message(FATAL_ERROR "${header} does not declare ${declared}")
+      endif()
+      set(installed ${CMAKE_CURRENT_BINARY_DIR}/deprecated/${header})
+      file(WRITE ${installed} "${marked}")
+    endif()
+  endforeach()
+  install(FILES ${installed} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/obscura/${folder})
 endforeach()
 
 # not below an architecture's folder: a project of no language does not look there

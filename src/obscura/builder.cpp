@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
+#include <system_error>
 
 #include "obscura/inside.h"
 #include "scene/complaints.h"
@@ -201,15 +203,41 @@ Builder& Builder::add(std::string_view kind, Table keys) {
 
 std::string Builder::text() const { return written(keys_).text; }
 
+namespace {
+
+// a message that names other places of the text, "name:7:1", with their keys
+std::string with_keys(const std::string& message, const std::string& name, const Written& scene) {
+  std::string said;
+  std::size_t from = 0;
+  for (std::size_t at; (at = message.find(name + ":", from)) != message.npos;) {
+    const char *number = message.data() + at + name.size() + 1, *const end = message.data() + message.size();
+    std::size_t line = 0;
+    int column = 0;
+    const auto lines = std::from_chars(number, end, line);
+    const auto columns = lines.ptr < end && *lines.ptr == ':'
+                             ? std::from_chars(lines.ptr + 1, end, column)
+                             : std::from_chars_result{number, std::errc::invalid_argument};
+    const bool place =
+        lines.ec == std::errc() && columns.ec == std::errc() && line >= 1 && line <= scene.keys.size();
+    said += message.substr(from, at - from) + (place ? scene.keys[line - 1] : name + ":");
+    from = place ? std::size_t(columns.ptr - message.data()) : at + name.size() + 1;
+  }
+  return said + message.substr(from);
+}
+
+}  // namespace
+
 Scene Builder::build(const std::string& name) const {
   const Written scene = written(keys_);
   try {
     return Scene::parse(scene.text, name);
   } catch (const SceneError& error) {
     std::vector<Fault> faults = error.faults;
-    for (Fault& each : faults)
+    for (Fault& each : faults) {
       if (each.line >= 1 && std::size_t(each.line) <= scene.keys.size())
         each.key = scene.keys[std::size_t(each.line - 1)];
+      each.message = with_keys(each.message, name, scene);
+    }
     throw SceneError(std::move(faults));
   }
 }

@@ -2,6 +2,7 @@
 
 // What the library's own files know of the objects of its interface; not installed.
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,8 +23,24 @@ struct Scene::Inside {
   std::vector<Body> bodies;
 };
 
+/// That an object is being worked on, as long as this is there. Throws UsageError where it is already: by
+/// another thread, or by the step that asks, through a force.
+class Work {
+ public:
+  Work(std::atomic<bool>& going, const char* what) : going_(going) {
+    if (going_.exchange(true))
+      throw UsageError(std::string(what) + " is at work, in another thread or in the force that asks");
+  }
+  Work(const Work&) = delete;
+  ~Work() { going_ = false; }
+
+ private:
+  std::atomic<bool>& going_;
+};
+
 struct World::Inside {
   explicit Inside(const Scene& of);
+  Work work() const { return {going, "this World"}; }
 
   /// The instant at which it stands.
   sim::Snapshot now() const;
@@ -37,6 +54,7 @@ struct World::Inside {
   std::vector<Pair> touched;  // as contact_changes() saw them last
   double trail = 0;           // s, the longest
   app::Ways ways;
+  mutable std::atomic<bool> going = false;
 };
 
 /// A value as TOML.

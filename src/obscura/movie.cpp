@@ -1,3 +1,6 @@
+#include <unistd.h>
+
+#include <atomic>
 #include <cmath>
 #include <optional>
 
@@ -29,6 +32,13 @@ struct Movie::Inside {
     writer.emplace(path, spec);
   }
 
+  Work work() { return {going, "this Movie"}; }
+  void refuse_fork() const {
+    if (::getpid() != process)
+      throw UsageError(
+          path + ": this Movie was made before fork(): its file is the parent's; make one in the child");
+  }
+
   void end_segment() {
     if (!encoder) return;
     writer->add(encoder->finish());
@@ -37,12 +47,14 @@ struct Movie::Inside {
   }
 
   std::string path;
+  pid_t process = ::getpid();
   media::MovieSpec spec;
   std::optional<media::MovieWriter> writer;
   std::optional<media::SegmentEncoder> encoder;  // of the second at hand
   int within = 0;                                // frames of it
   std::int64_t frames = 0;
   media::Image image;
+  std::atomic<bool> going = false;
 };
 
 namespace {
@@ -60,16 +72,24 @@ Movie::Movie(const std::string& path, const Renderer& renderer, const FilmOption
 Movie::Movie(const std::string& path, const FilmOptions& options)
     : inside_(guarded([&] { return std::make_unique<Inside>(path, options); })) {}
 Movie::Movie(Movie&&) noexcept = default;
-Movie::~Movie() = default;
+Movie::~Movie() {
+  // the file of a parent is left to it
+  if (inside_ && ::getpid() != inside_->process) (void)inside_.release();
+}
 
 void Movie::add(const Frame& frame) {
   guarded([&] {
     Inside& it = *inside_;
+    it.refuse_fork();
+    const Work here = it.work();
     if (!it.writer) throw UsageError(it.path + ": is closed");
-    if (frame.width != it.spec.width || frame.height != it.spec.height ||
-        frame.pixels.size() != std::size_t(4) * std::size_t(frame.width) * std::size_t(frame.height))
+    if (frame.width != it.spec.width || frame.height != it.spec.height)
       throw UsageError(fmt::format("{}: a frame of {}x{}, expected {}x{}", it.path, frame.width, frame.height,
                                    it.spec.width, it.spec.height));
+    if (const std::size_t whole = std::size_t(4) * std::size_t(frame.width) * std::size_t(frame.height);
+        frame.pixels.size() != whole)
+      throw UsageError(fmt::format("{}: a frame of {}x{} with {} bytes, expected {}", it.path, frame.width,
+                                   frame.height, frame.pixels.size(), whole));
     if (!it.encoder) it.encoder.emplace(it.path, it.spec);
     it.image.width = frame.width, it.image.height = frame.height;
     it.image.pixels.assign(frame.pixels.begin(), frame.pixels.end());
@@ -84,6 +104,8 @@ std::int64_t Movie::frames() const { return inside_->frames; }
 void Movie::close() {
   guarded([&] {
     Inside& it = *inside_;
+    it.refuse_fork();
+    const Work here = it.work();
     if (!it.writer) return;
     if (it.frames == 0) throw UsageError(it.path + ": a movie of no frames");
     it.end_segment();

@@ -21,8 +21,9 @@
 /// with 2 numbers in the plane and 3 in space.
 ///
 /// Everything that fails throws an Error of one of the kinds below. Objects of one kind may be used in
-/// several threads at once, each object by one thread at a time. After fork() a child may use scenes and
-/// worlds of its parent; a Renderer or Movie it makes itself.
+/// several threads at once, each object by one thread at a time: a World, Renderer or Movie that is at work
+/// throws UsageError to another thread, and to a force that asks its own world. After fork() a child may use
+/// scenes and worlds of its parent; a Renderer or Movie it makes itself.
 
 /// \example film.cpp
 /// A film, frame by frame.
@@ -46,7 +47,7 @@
 
 namespace [[gnu::visibility("default")]] obscura {
 
-/// The version of the library, "0.2.0".
+/// The version of the library, as in "0.2.0".
 std::string_view version() noexcept;
 
 // --- What goes wrong
@@ -327,8 +328,9 @@ class World {
   std::vector<Event> events() const;
 
   State save() const;
-  /// Goes back, or on, to a state that was saved of a world of the same scene: it goes on to the same bits.
-  /// Throws UsageError for another one.
+  /// Goes back, or on, to a state that was saved of a world of the same scene: it goes on to the same bits. A
+  /// state of a scene with other values (a mass, the gravity) goes on by this one's. Throws UsageError for a
+  /// state of another make: of other bodies, joints or conditions.
   void restore(const State& state);
   /// Equal exactly when states are: 32 hexadecimal digits, as `obscura states` prints them.
   std::string hash() const;
@@ -448,4 +450,4 @@ struct Sweep {
 Sweep sweep(const Scene& scene, const std::vector<std::string>& vary, const std::vector<std::string>& measure,
             int jobs = 0);
 
-}  // namespace obscura
+}  // namespace gnu::visibility("default")]]obscura

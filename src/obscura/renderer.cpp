@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <atomic>
 #include <optional>
 #include <utility>
 
@@ -24,6 +25,7 @@ struct Renderer::Inside {
     painter.emplace(film.scene, ahead, film.how.context);
   }
 
+  Work work() { return {going, "this Renderer"}; }
   void refuse_fork() const {
     if (::getpid() != process)
       throw UsageError(
@@ -51,6 +53,7 @@ struct Renderer::Inside {
   std::vector<std::uint64_t> saved;           // where the last at() began, to go on from
   std::int64_t saved_step = 0;
   media::Image image;
+  std::atomic<bool> going = false;
 };
 
 Renderer::Renderer(const Scene& scene, const FilmOptions& options)
@@ -71,6 +74,7 @@ std::optional<Frame> Renderer::next() {
   return guarded([&]() -> std::optional<Frame> {
     Inside& it = *inside_;
     it.refuse_fork();
+    const Work here = it.work();
     if (!it.simulation)
       it.simulation.emplace(it.film.scene, it.film.shots, it.ahead,
                             app::SimulationOptions{.frames = 1, .hash_each = true});
@@ -84,7 +88,10 @@ std::optional<Frame> Renderer::next() {
   });
 }
 
-void Renderer::rewind() { inside_->simulation.reset(); }
+void Renderer::rewind() {
+  const Work here = inside_->work();
+  inside_->simulation.reset();
+}
 
 // from the state before the last one's, where that is not too late
 Frame Renderer::Inside::at(sim::Rational t) {
@@ -108,6 +115,7 @@ Frame Renderer::Inside::at(sim::Rational t) {
 Frame Renderer::at(double t) {
   return guarded([&] {
     inside_->refuse_fork();
+    const Work here = inside_->work();
     return inside_->at(exact(t, "t"));
   });
 }
@@ -116,6 +124,7 @@ Frame Renderer::draw(const World& world) {
   return guarded([&] {
     Inside& it = *inside_;
     it.refuse_fork();
+    const Work here = it.work();
     if (it.ahead.runs) throw UsageError("a film of several runs (film.vary) shows its own: next() or at()");
     const World::Inside& shown = world.inside();
     if (&shown.scene.inside() != &it.of.inside() && world.scene().hash() != it.of.hash())
@@ -133,6 +142,7 @@ Frame Renderer::draw(const World& world) {
 }
 
 std::vector<std::uint8_t> Renderer::take(std::vector<std::uint8_t> memory) {
+  const Work here = inside_->work();
   return std::exchange(inside_->image.pixels, std::move(memory));
 }
 

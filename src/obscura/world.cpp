@@ -37,6 +37,7 @@ World::Inside::Inside(const Scene& of) : scene(of) {
 }
 
 sim::Snapshot World::Inside::now() const {
+  const Work here = work();
   auto found = run->at(run->now());
   if (const auto* trouble = std::get_if<sim::Trouble>(&found))
     throw run_error(scene.inside().scene.file, *trouble);
@@ -45,6 +46,7 @@ sim::Snapshot World::Inside::now() const {
 }
 
 void World::Inside::go(std::int64_t step) {
+  const Work here = work();
   const auto end = run->go(step);
   keep_ways();
   if (const auto* trouble = std::get_if<sim::Trouble>(&end))
@@ -134,8 +136,9 @@ int World::first_turning() const { return int(scene().bodies().size() - turns().
 
 namespace {
 
-void set(sim::Run& run, const sim::NewBodyColumns& columns) {
-  if (const std::string why = run.set(columns); !why.empty()) throw UsageError(why);
+void set(World::Inside& inside, const sim::NewBodyColumns& columns) {
+  const Work here = inside.work();
+  if (const std::string why = inside.run->set(columns); !why.empty()) throw UsageError(why);
 }
 
 // an empty column of a world without such rows is all of it
@@ -149,17 +152,13 @@ std::span<const double> all_of(std::span<const double> given, const Columns& the
 }  // namespace
 
 void World::set_positions(std::span<const double> all) {
-  set(*inside_->run, {.x = all_of(all, positions(), "positions")});
+  set(*inside_, {.x = all_of(all, positions(), "positions")});
 }
 void World::set_velocities(std::span<const double> all) {
-  set(*inside_->run, {.v = all_of(all, velocities(), "velocities")});
+  set(*inside_, {.v = all_of(all, velocities(), "velocities")});
 }
-void World::set_turns(std::span<const double> all) {
-  set(*inside_->run, {.turn = all_of(all, turns(), "turns")});
-}
-void World::set_spins(std::span<const double> all) {
-  set(*inside_->run, {.spin = all_of(all, spins(), "spins")});
-}
+void World::set_turns(std::span<const double> all) { set(*inside_, {.turn = all_of(all, turns(), "turns")}); }
+void World::set_spins(std::span<const double> all) { set(*inside_, {.spin = all_of(all, spins(), "spins")}); }
 
 double World::read(std::string_view quantity) const {
   const auto& all = inside_->columns;
@@ -211,21 +210,29 @@ ContactChanges World::contact_changes() {
 }
 
 std::vector<Event> World::events() const {
+  const Work here = inside_->work();
   std::vector<Event> all;
   for (const sim::RunEvent& each : inside_->run->events())
     all.push_back({sim::value(each.time), each.name, each.what, each.of, each.marks, each.stop});
   return all;
 }
 
-State World::save() const { return {inside_->run->saved()}; }
+State World::save() const {
+  const Work here = inside_->work();
+  return {inside_->run->saved()};
+}
 
 void World::restore(const State& state) {
+  const Work here = inside_->work();
   if (!inside_->run->restore(state.words))
     throw UsageError("restore: this is no state of a world of this scene");
   if (inside_->trail > 0) (void)inside_->run->take_track();
   inside_->ways.clear();
 }
 
-std::string World::hash() const { return app::state_hash(inside_->run->words()); }
+std::string World::hash() const {
+  const Work here = inside_->work();
+  return app::state_hash(inside_->run->words());
+}
 
 }  // namespace obscura

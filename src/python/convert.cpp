@@ -61,6 +61,12 @@ py::dict dict(const Table& from) {
   return all;
 }
 
+std::string shape(const py::array& of) {
+  std::string text;
+  for (py::ssize_t i = 0; i < of.ndim(); ++i) text += (i ? " x " : "") + std::to_string(of.shape(i));
+  return text;
+}
+
 Unlocked::Unlocked() {
   interrupt_by([asked = std::chrono::steady_clock::now(), ended = false]() mutable {
     const auto now = std::chrono::steady_clock::now();

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+
+#include <string>
 
 #include "obscura/obscura.h"
 
@@ -14,6 +17,9 @@ Table table(pybind11::handle from);
 /// The same back: numbers, text, lists and dicts.
 pybind11::object object(const Value& from);
 pybind11::dict dict(const Table& from);
+
+/// "2 x 5": an array's shape in messages.
+std::string shape(const pybind11::array& of);
 
 /// Makes the module's exceptions, and translates the library's errors to them.
 void add_errors();

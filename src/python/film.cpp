@@ -25,8 +25,13 @@ FilmOptions options(const py::kwargs& given) {
     const std::string name = py::str(key);
     if (value.is_none()) continue;
     if (name == "size") {
-      const auto [width, height] = value.cast<std::pair<int, int>>();
-      made.width = width, made.height = height;
+      std::pair<int, int> size;
+      try {
+        size = value.cast<std::pair<int, int>>();
+      } catch (const py::cast_error&) {
+        throw py::type_error("size is (width, height) in pixels, not " + std::string(py::repr(value)));
+      }
+      made.width = size.first, made.height = size.second;
     } else if (name == "width") {
       made.width = value.cast<int>();
     } else if (name == "height") {
@@ -76,10 +81,13 @@ Frame frame_of(const Pixels& pixels) {
   return {int(pixels.shape(1)), int(pixels.shape(0)), {pixels.data(), std::size_t(pixels.size())}, 0, 0, ""};
 }
 
-// of three colours, or of four
+// of three colours, or of four; of floating-point numbers nobody knows whether 1 or 255 is white
 Pixels with_alpha(const py::handle& given) {
-  Pixels pixels = Pixels::ensure(given);
-  if (!pixels) throw py::error_already_set();
+  const py::array all = py::array::ensure(given);
+  if (!all || (all.dtype().kind() != 'u' && all.dtype().kind() != 'i'))
+    throw py::type_error("a frame is a Frame, or an array of bytes (uint8), 0 to 255" +
+                         (all ? ", not of " + std::string(py::str(all.dtype())) : ""));
+  Pixels pixels = Pixels::ensure(all);
   if (pixels.ndim() != 3 || pixels.shape(2) != 3) return pixels;
   Pixels whole({pixels.shape(0), pixels.shape(1), py::ssize_t(4)});
   for (py::ssize_t i = 0; i < pixels.size() / 3; ++i) {
@@ -158,10 +166,14 @@ void add_film(py::module_& module) {
       .def_readonly("state", &Picture::state, "The hash of the state that it shows.")
       .def(
           "__array__",
-          [](const Picture& it, const py::object& type) -> py::object {
-            return type.is_none() ? py::object(it.pixels) : it.pixels.attr("astype")(type);
+          [](const Picture& it, const py::object& type, const py::object& copy) -> py::object {
+            if (!type.is_none() && !type.equal(it.pixels.dtype())) {
+              if (copy.is(py::bool_(false))) throw py::value_error("another type of numbers needs a copy");
+              return it.pixels.attr("astype")(type);
+            }
+            return copy.is(py::bool_(true)) ? it.pixels.attr("copy")() : py::object(it.pixels);
           },
-          py::arg("dtype") = py::none())
+          py::arg("dtype") = py::none(), py::arg("copy") = py::none())
       .def("save",
            [](const Picture& it, const py::object& path) {
              const py::object name = py::module_::import("os").attr("fspath")(path);

@@ -33,10 +33,16 @@ struct StageView {
 // adds the answer of a force, if it returns one: forces, or forces and torques
 void add(const py::handle answer, Array& to, const char* what) {
   const Array given = Array::ensure(answer);
-  if (!given) throw py::error_already_set();
+  if (!given)
+    throw py::type_error(std::string("a force returned ") + what +
+                         " that are no array of numbers: " + std::string(py::repr(answer)));
   if (given.size() != to.size())
     throw py::value_error(std::string("a force returned ") + std::to_string(given.size()) + " numbers of " +
                           what + ", expected " + std::to_string(to.size()));
+  // columns for rows are as many numbers
+  if (given.ndim() > 1 && shape(given) != shape(to))
+    throw py::value_error(std::string("a force returned ") + what + " of " + shape(given) + ", expected " +
+                          shape(to) + ": a row a body");
   for (py::ssize_t i = 0; i < to.size(); ++i) to.mutable_data()[i] += given.data()[i];
 }
 
@@ -54,16 +60,16 @@ struct Callable {
     const py::gil_scoped_acquire locked;
     const auto n = py::ssize_t(stage.positions.rows), d = py::ssize_t(stage.positions.columns);
     const auto spins = py::ssize_t(stage.spins.columns);
-    const auto shape = [&](py::ssize_t columns) {
+    const auto rows = [&](py::ssize_t columns) {
       return columns == 1 ? std::vector<py::ssize_t>{n} : std::vector<py::ssize_t>{n, columns};
     };
     StageView view{stage.time,
                    copied(stage.positions, {n, d}),
                    copied(stage.velocities, {n, d}),
-                   copied(stage.spins, shape(spins)),
+                   copied(stage.spins, rows(spins)),
                    copied(stage.orientations, {n, d, d}),
-                   Array(shape(d)),
-                   Array(shape(spins))};
+                   Array(rows(d)),
+                   Array(rows(spins))};
     std::memset(view.forces.mutable_data(), 0, std::size_t(view.forces.nbytes()));
     std::memset(view.torques.mutable_data(), 0, std::size_t(view.torques.nbytes()));
     Array forces = view.forces, torques = view.torques;

@@ -33,9 +33,13 @@ template <Columns (World::*Get)() const>
 py::array column(const py::object& world) {
   return shared(world, (world.cast<const World&>().*Get)());
 }
-template <void (World::*Set)(std::span<const double>)>
-void set_column(World& world, const Given& to) {
-  (world.*Set)(span(to));
+template <Columns (World::*Get)() const, void (World::*Set)(std::span<const double>)>
+void set_column(const py::object& world, const Given& to) {
+  // columns for rows are as many numbers
+  const py::array there = column<Get>(world);
+  if (to.ndim() > 1 && to.size() == there.size() && shape(to) != shape(there))
+    throw UsageError("an array of " + shape(to) + ", expected " + shape(there) + ": a row a body");
+  (world.cast<World&>().*Set)(span(to));
 }
 
 }  // namespace
@@ -123,10 +127,12 @@ void add_world(py::module_& module) {
       .def(
           "step_to", [](World& it, double t) { unlocked([&] { it.step_to(t); }); }, py::arg("t"))
       .def("body", &World::body, py::arg("name"))
-      .def_property("positions", &column<&World::positions>, &set_column<&World::set_positions>)
-      .def_property("velocities", &column<&World::velocities>, &set_column<&World::set_velocities>)
-      .def_property("turns", &column<&World::turns>, &set_column<&World::set_turns>)
-      .def_property("spins", &column<&World::spins>, &set_column<&World::set_spins>)
+      .def_property("positions", &column<&World::positions>,
+                    &set_column<&World::positions, &World::set_positions>)
+      .def_property("velocities", &column<&World::velocities>,
+                    &set_column<&World::velocities, &World::set_velocities>)
+      .def_property("turns", &column<&World::turns>, &set_column<&World::turns, &World::set_turns>)
+      .def_property("spins", &column<&World::spins>, &set_column<&World::spins, &World::set_spins>)
       .def_property_readonly("first_turning", &World::first_turning)
       .def("read", &World::read, py::arg("quantity"))
       .def_property_readonly("quantities", &World::quantities)

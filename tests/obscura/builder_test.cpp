@@ -141,6 +141,21 @@ TEST(Builder, AWrongValueIsAFaultOfItsKey) {
   }
 }
 
+TEST(Builder, AFaultNamesOtherPlacesByTheirKeys) {
+  Builder builder;
+  builder.set("room.size", {4, 2.25});
+  builder.add("ball", {{"name", "ball"}, {"radius", 0.2}, {"position", {1, 1}}});
+  builder.add("ball", {{"radius", 0.2}, {"position", {9, 1}}});
+  try {
+    builder.build("two");
+    FAIL();
+  } catch (const SceneError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("ball[0].name"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("room.size"));
+    EXPECT_THAT(error.what(), testing::Not(testing::ContainsRegex("two:[0-9]")));
+  }
+}
+
 TEST(Builder, TextComesThroughWhateverStandsInIt) {
   const std::string title = "quote \" back \\ tab \t umlaut \xc3\xa4";
   Builder builder;

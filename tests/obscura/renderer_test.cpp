@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <thread>
 
 #include "media/png.h"
@@ -182,6 +183,32 @@ TEST_F(Films, AMovieTakesFramesAndLeavesNothingUnlessItIsClosed) {
   }
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
   EXPECT_THROW(Movie(path("c.avi"), renderer), FileError);
+}
+
+TEST_F(Films, AChildThatLetsGoOfAMovieLeavesItToItsParent) {
+  const Scene scene = Scene::read(kScene);
+  Renderer renderer(scene, kSmall);
+  auto movie = std::make_unique<Movie>(path("a.mp4"), renderer);
+  for (int n = 0; n < 40; ++n) movie->add(*renderer.next());
+  const Bytes black(160 * 90 * 4);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(300);
+    int wrong = 0;
+    try {
+      movie->add({160, 90, black, 0, 0, ""});
+      wrong |= 1;
+    } catch (const UsageError&) {
+    }
+    movie.reset();
+    ::_exit(wrong);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  movie->add(*renderer.next());
+  movie->close();
+  EXPECT_GT(fs::file_size(path("a.mp4")), 1000u);
 }
 
 TEST_F(Films, AFilmIsThatOfTheProgramByteByByte) {

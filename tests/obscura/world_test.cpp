@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <semaphore>
 #include <thread>
+#include <utility>
 
 #include "obscura/obscura.h"
 #include "where.h"
@@ -252,6 +254,55 @@ TEST(World, InThreadsAtOnceIsTheSameAsAlone) {
       });
   }
   for (const std::string& hash : hashes) EXPECT_EQ(hash, alone.hash());
+}
+
+TEST(World, ThatIsAtWorkRefusesAnotherThread) {
+  std::binary_semaphore within(0), asked(0);
+  bool first = true;
+  const Scene scene = balls(1, 100).with_force("slow", [&](const Stage&, const Push&) {
+    if (!std::exchange(first, false)) return;
+    within.release();
+    asked.acquire();
+  });
+  World world(scene);
+  {
+    const std::jthread other([&] { world.step(); });
+    within.acquire();
+    EXPECT_THROW(world.step(), UsageError);
+    EXPECT_THROW(world.set_velocities(std::vector<double>{0, 0}), UsageError);
+    EXPECT_THROW((void)world.contacts(), UsageError);
+    asked.release();
+  }
+  world.step();
+  EXPECT_EQ(world.steps(), 2);
+}
+
+TEST(World, RefusesAForceThatAsksIt) {
+  World* its = nullptr;
+  const Scene scene = balls(1, 100).with_force("itself", [&](const Stage&, const Push&) {
+    if (its) its->step();
+  });
+  World world(scene);
+  its = &world;
+  try {
+    world.step();
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("at work"));
+  }
+  EXPECT_EQ(world.steps(), 0);
+  its = nullptr;
+  world.step();
+}
+
+TEST(World, TakesAStateOfOtherValuesButNotOfAnotherMake) {
+  const Scene one = balls(1, 100);
+  World world(one), heavy(one.with("b0.mass", 5)), two(balls(2, 100));
+  world.step(10);
+  heavy.restore(world.save());
+  EXPECT_EQ(heavy.steps(), 10);
+  EXPECT_EQ(heavy.positions()(0, 1), world.positions()(0, 1));
+  EXPECT_THROW(two.restore(world.save()), UsageError);
 }
 
 TEST(World, OfTheInterruptedCanGoOn) {

@@ -229,6 +229,45 @@ def test_a_force_on_a_thousand_bodies_is_one_call_a_stage():
     assert calls == [1000] * 30
 
 
+def test_columns_for_rows_are_refused():
+    scene = room()
+    scene.ball.add(name="c", radius=0.1, position=[1, 1])
+    scene.ball.add(name="d", radius=0.1, position=[1, 3])
+    world = scene.world()
+    with pytest.raises(obscura.UsageError, match="2 x 3, expected 3 x 2"):
+        world.velocities = np.ones((2, 3))
+    world.velocities = np.ones((3, 2))
+    scene.add_force(lambda stage: stage.positions.T, "columns")
+    with pytest.raises(ValueError, match="2 x 3, expected 3 x 2"):
+        scene.world().step()
+
+
+def test_a_world_refuses_a_force_and_a_thread_that_ask_it_at_work():
+    scene, its = room(), []
+    scene.add_force(lambda stage: [world.step() for world in its], "itself")
+    its.append(scene.world())
+    with pytest.raises(obscura.UsageError, match="at work"):
+        its[0].step()
+    program = """
+import obscura, sys, threading
+scene = obscura.Scene(sys.argv[1])
+world, renderer = scene.world(), scene.frames(size=(160, 90))
+def ask():
+    for _ in range(100):
+        try:
+            world.step()
+            world.contacts
+            next(renderer)
+        except obscura.UsageError:
+            pass
+threads = [threading.Thread(target=ask) for _ in range(4)]
+for thread in threads: thread.start()
+for thread in threads: thread.join()
+"""
+    run = subprocess.run([sys.executable, "-c", program, ROOT / "scenes/room.toml"], capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+
+
 def test_a_force_may_fill_its_arrays_and_give_torques():
     scene = obscura.Scene({"room": {"size": [4, 4], "walls": "none", "gravity": [0, 0]},
                            "box": [{"name": "box", "size": [1, 1], "mass": 6, "position": [2, 2]}]})
@@ -259,6 +298,11 @@ def test_what_a_force_raises_comes_out_and_the_step_is_not_taken():
     scene.add_force(lambda stage: np.ones(7), "wrong")
     with pytest.raises(ValueError, match="expected 2"):
         scene.world().step()
+    for answer in ("two", [[1, 2], [3]], object()):
+        scene = room()
+        scene.add_force(lambda stage: answer, "text")
+        with pytest.raises(TypeError, match="no array of numbers"):
+            scene.world().step()
     scene = room()
     scene.add_force(lambda stage: np.nan * stage.positions, "hole")
     with pytest.raises(obscura.RunError) as found:
@@ -322,6 +366,16 @@ def test_a_frame_keeps_its_pixels_and_the_memory_of_those_gone_is_used_again():
     kept[0, 0] = 0  # it is its owner's alone
 
 
+def test_a_frame_is_an_array_with_or_without_a_copy():
+    frame = obscura.Scene(ROOT / "scenes/room.toml").frame(0, **SMALL)
+    assert np.shares_memory(np.asarray(frame), frame.array) and np.asarray(frame, np.uint8).dtype == np.uint8
+    assert np.shares_memory(frame.__array__(copy=False), frame.array)
+    assert not np.shares_memory(frame.__array__(copy=True), frame.array)
+    assert np.asarray(frame, float).dtype == float
+    with pytest.raises(ValueError):
+        frame.__array__(float, copy=False)
+
+
 def compare(a, b):
     return program("compare", a, b).returncode == 0
 
@@ -344,9 +398,16 @@ def test_films_movies_pages_figures_and_sweeps(tmp_path):
         movie.add(np.zeros((16, 16, 4), np.uint8))
         raise RuntimeError
     assert not [name for name in os.listdir(tmp_path) if "d.mp4" in name]
+    with obscura.Movie(tmp_path / "e.mp4", size=(16, 16), fps=10) as movie:
+        with pytest.raises(TypeError, match="float64"):
+            movie.add(np.ones((16, 16, 3)))  # white, or nearly black?
+        movie.add(np.ones((16, 16, 3), np.uint8))
+    with pytest.raises(TypeError, match="size is"):
+        scene.frames(size="640x360")
     assert scene.page(end=0.2, **SMALL).startswith("<!doctype html>")
     found = scene.sweep({"ball.elasticity": [0.5, 1]}, ["energy.total@0.5"])
     assert list(found["ball.elasticity"]) == [0.5, 1] and len(found["energy.total@0.5"]) == 2
+    assert list(found["trouble"]) == ["", ""]
 
 
 def test_a_film_of_a_force_says_that_it_cannot_be_verified(tmp_path):

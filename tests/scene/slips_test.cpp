@@ -54,6 +54,29 @@ TEST(Slips, BeginWhereFrictionIsUsedUp) {
   }
 }
 
+// What flies touches nothing, by every scheme: x = 2 + 3 t, and y = 6 - 5 t^2, to the first order in the step.
+TEST(Slips, WhatFliesIsHeldByNothingByEveryScheme) {
+  for (const bool space : {false, true}) {
+    for (const std::string scheme : {"rk4", "midpoint", "semi-implicit", "euler"}) {
+      const std::string ball = fmt::format(
+          "[[ball]]\nname = \"b\"\nradius = 0.2\nposition = [2, 6{0}]\nvelocity = [3, 0{0}]\nelasticity = "
+          "0.8\n",
+          space ? ", 0" : "");
+      const std::string text = fmt::format(
+          "[physics]\ncollision = \"event\"\nintegrator = \"{}\"\nrate = 600\n[room]\nsize = {}\ngravity = "
+          "{}\n",
+          scheme, space ? "[40, 8, 40]" : "[40, 8]", space ? "[0, -10, 0]" : "[0, -10]");
+      const TextRun run(text + ball);
+      const sim::Vec3 flying = run.place(0.7);
+      EXPECT_NEAR(flying.x(), 4.1, 0.01) << scheme << space;
+      EXPECT_NEAR(flying.y(), 6 - 5 * 0.49, 10 * 0.7 / 600) << scheme << space;
+      // it has bounced, and rests in the end
+      EXPECT_GT(run.place(1.5).y(), 0.3) << scheme << space;
+      EXPECT_NEAR(run.place(12).y(), 0.2, 1e-3) << scheme << space;
+    }
+  }
+}
+
 // A load on a rope that is lifted by 20 N a second is weightless after half a second, and then free:
 //   y = y0 + 20 (t - 0.5)^3 / 6
 TEST(Slips, ARopeLetsGoWhereItNoLongerPulls) {

@@ -213,7 +213,8 @@ class Scene(Section):
             vary = [f"{key}=" + ",".join(str(value) for value in values) for key, values in vary.items()]
         measure = [measure] if isinstance(measure, str) else list(measure)
         heads, rows = _obscura.sweep(self._built(), list(vary), measure, jobs)
-        return {head: _column([row[i] for row in rows]) for i, head in enumerate(heads)}
+        columns = {head: [row[i] for row in rows] for i, head in enumerate(heads)}
+        return {head: numpy.array(cells) if head == "trouble" else _column(cells) for head, cells in columns.items()}
 
     def _repr_html_(self) -> str:
         # a frame of its own, for a page has its own styles and scripts

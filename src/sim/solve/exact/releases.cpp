@@ -128,6 +128,7 @@ double ExactSolver<D>::release_length(State<D>& state, double t, const Constrain
 // interval stays as it is.
 template <int D>
 double ExactSolver<D>::let_go_at(State<D>& state, double t) {
+  if (constraints_.empty()) return 0;
   using Kind = typename Constraint::Kind;
   const auto mode_of = [&](const Constraint& one) { return interval_.modes[std::size_t(one.block)].kind; };
   double most = 0;
