@@ -133,7 +133,7 @@ class ForceBuilder {
     const Node *among = fields.given("among"), *between = fields.given("between"), *of = fields.given("of"),
                *middle = fields.given("center");
     const Node *potential = fields.given("potential"), *components = fields.given("components"),
-               *torque = fields.given("torque");
+               *torque = fields.given("torque"), *at = fields.given("at");
     if (int(of != nullptr) + int(among != nullptr) + int(between != nullptr) > 1) {
       complaints_.add(
           fields.place(),
@@ -141,8 +141,9 @@ class ForceBuilder {
       return;
     }
     if ((potential != nullptr) == (components || torque)) {
-      complaints_.add(fields.place(),
-                      fmt::format("{} needs one of 'potential' and 'components', or a 'torque'", name));
+      const char* says = potential ? "{}: a 'potential' is all of its force and torque; leave the others out"
+                                   : "{} needs one of 'potential' and 'components', or a 'torque'";
+      complaints_.add(fields.place(), fmt::format(fmt::runtime(says), name));
       return;
     }
     const bool pair = among || between;
@@ -155,6 +156,10 @@ class ForceBuilder {
       complaints_.add(
           middle->place,
           "'center' is of forces on each body; between two, d is the way from the first to the second");
+      return;
+    }
+    if (pair && at) {
+      complaints_.add(at->place, "'at' is of forces on each body; between two they act at centres of mass");
       return;
     }
     if (among) {
@@ -171,6 +176,9 @@ class ForceBuilder {
       for (const int body : acted_on(fields, force.center ? force.center->body : -1))
         force.subjects.push_back(subject(body));
       if (torque && !turned_by(*torque, fields.given("of") != nullptr, force)) return;
+      if (at && !turned_by(*at, of != nullptr, force)) return;
+      for (Subject& it : force.subjects)
+        if (at && turns(it)) it.local = roster_.seats[std::size_t(it.body)].seen(vector<D>(*at));
     }
 
     sim::ForceText text;
@@ -195,21 +203,24 @@ class ForceBuilder {
       return;
     }
     force.formula = std::make_shared<sim::ForceFormula>(std::get<sim::ForceFormula>(made));
+    if (potential && force.formula->torque && !turned_by(*potential, of != nullptr, force)) return;
     give(std::move(force));
   }
 
+  bool turns(const Subject& it) const { return world_.model.bodies[std::size_t(it.body)].turns(); }
+
   // whether all that are named turn
   bool turned_by(const Node& torque, bool named, Force& force) {
-    const auto turns = [&](const Subject& it) { return world_.model.bodies[std::size_t(it.body)].turns(); };
     if (force.center && force.center->body >= 0) {
       complaints_.add(torque.place,
-                      "'torque' needs a 'center' that is a place: no body would feel the opposite");
+                      "a torque, or a potential of the angle, needs a 'center' that is a place: no body "
+                      "would feel the opposite");
       return false;
     }
     for (const Subject& it : force.subjects) {
       if (!named || turns(it)) continue;
-      complaints_.add(torque.place, fmt::format("'torque': '{}' does not turn",
-                                                world_.model.bodies[std::size_t(it.body)].name));
+      complaints_.add(torque.place,
+                      fmt::format("'{}' does not turn", world_.model.bodies[std::size_t(it.body)].name));
       return false;
     }
     return true;

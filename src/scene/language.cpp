@@ -386,6 +386,8 @@ std::vector<Key> rows() {
        .doc = "A force given by expressions, at the centre of mass of each of some bodies, or between pairs of them: a potential, which is differentiated exactly, or components."},
       {.path = "force.name", .form = name, .absent = "`force[0]`, ...", .doc = "Its name for `--set`.", .example = "\"field\""},
       {.path = "force.of", .form = bodies, .absent = "every body", .doc = "The bodies that it acts on.", .example = "\"planet[*]\""},
+      {.path = "force.at", .form = vector, .unit = "m", .absent = "its centre of mass",
+       .doc = "Where on each of them it acts, in the body's own frame; the places and velocities in its expressions are that point's.", .example = "[0.3, 0]"},
       {.path = "force.among", .form = bodies, .absent = "not between pairs", .doc = "It acts between every two of these bodies, equal and opposite.", .example = "[\"ion[*]\"]"},
       {.path = "force.between", .form = ends, .absent = "not between pairs",
        .doc = "It acts between two bodies, equal and opposite. `a[*]` with `b[*]` makes pairs index by index, as of springs.", .example = "[\"sun\", \"earth\"]"},

@@ -30,7 +30,7 @@ std::string_view other_word(std::string_view key, std::string_view owner) {
       {{"kinetic_friction", "friction_kinetic", "dynamic_friction", "friction_dynamic", "mu_k", "mu_kinetic"},
        "; it is 'friction' here, and 'static_friction' of what does not slip"},
       {{"rolling_friction", "friction_rolling", "rolling_resistance", "rollingresistance"},
-       "; it is a [[force]] with a 'torque' here, such as \"-0.02*sign(spin)\""},
+       "; it is a [[force]] with a 'torque' here, such as \"-0.02*tanh(spin/0.01)\""},
       {{"angular_velocity", "angularvelocity", "omega", "w", "rotation_speed"},
        "; it is 'spin' here, in degrees per second"},
       {{"v", "vel", "linear_velocity", "linearvelocity", "speed"}, "; it is 'velocity' here"},

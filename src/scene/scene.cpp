@@ -30,6 +30,7 @@
 #include "scene/tracks.h"
 #include "scene/whens.h"
 #include "sim/constraint/joints/joint.h"
+#include "sim/constraint/material.h"
 #include "sim/math/trig.h"
 #include "sim/motion/stability.h"
 #include "sim/solve/contact_solver.h"
@@ -190,11 +191,7 @@ void refuse_crowd(const Node& top, const sim::Model<D>& model, Diagnostics& comp
 // what slips otherwise than it rests is the direct solver's
 template <int D>
 void check_static_friction(const Node& top, const sim::Model<D>& model, Diagnostics& complaints) {
-  const auto given = [](const auto& it) { return it.static_friction.has_value(); };
-  if (std::none_of(model.bodies.begin(), model.bodies.end(), given) &&
-      std::none_of(model.walls.begin(), model.walls.end(), given) &&
-      std::none_of(model.rails.begin(), model.rails.end(), given))
-    return;
+  if (!sim::has_static_friction(model)) return;
   const Fields physics = Fields::of(top, "physics");
   const bool handout = model.collision == sim::Collision::handout;
   if (handout || sim::solver(model) != sim::Solver::direct)

@@ -49,6 +49,24 @@ TEST_F(Describe, SaysWhatHitsWhatWhenAndHowFast) {
   EXPECT_EQ(run.out.find("hits the floor"), run.out.rfind("hits the floor"));
 }
 
+// a push there and back leaves the energy as it was, but not in between
+TEST_F(Describe, TellsOfEnergyThatComesAndGoes) {
+  scene(R"toml(duration = 2
+[room]
+size = [20, 4]
+walls = "none"
+gravity = [0, 0]
+[[ball]]
+radius = 0.1
+mass = 1
+[[force]]
+components = ["if(t < 1, 3, -3)", "0"]
+)toml");
+  const Outcome run = obscura("describe scene.toml");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("The energy is 0 J at the start and at the end, up to 4.5 J at 1 s."));
+}
+
 /// Marks, what conditions let go, what arrows and plots show, and words that come at an instant.
 TEST_F(Describe, TellsOfMarksAndOfWhatIsShown) {
   scene(R"(title = 'It falls by $\frac{1}{2} g t^2$'

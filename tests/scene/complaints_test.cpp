@@ -75,8 +75,8 @@ TEST(Diagnostics, WordsOfOtherProgramsAreTranslated) {
           "a.toml:3:1: unknown key 'restitution' in [[ball]]; it is 'elasticity' here");
   refused("[[ball]]\nradius = 1\nomega = 3",
           "a.toml:3:1: unknown key 'omega' in [[ball]]; it is 'spin' here, in degrees per second");
-  refused("[[spring]]\nbetween = [[0, 1], [1, 1]]\nk = 3",
-          "a.toml:3:1: unknown key 'k' in [[spring]]; it is 'stiffness' here");
+  refused("[[particle]]\n[[spring]]\nbetween = [\"particle[0]\", [1, 1]]\nk = 3",
+          "a.toml:4:1: unknown key 'k' in [[spring]]; it is 'stiffness' here");
   refused("[[particle]]\nmass = \"1 - t\"",
           "a.toml:2:8: 'mass': expected a number of kilograms, got the string \"1 - t\"; a mass stays the "
           "same in a "

@@ -67,5 +67,29 @@ TEST(Lectures, ATunnelThroughTheEarthTakesItsTime) {
   EXPECT_NEAR(run.place(5000).x(), 6.371e6 * std::cos(w * 5000), 1e-3);
 }
 
+// What flies moves by the scheme that is named, in every manner: with a = -g and n steps of h the place is
+//   v n h - g h^2 n (n - 1)/2 by Euler's, v n h - g h^2 n (n + 1)/2 by the semi-implicit one, else v t - g
+//   t^2/2
+TEST(Lectures, WhatFliesMovesByTheSchemeThatIsNamed) {
+  for (const bool space : {false, true}) {
+    for (const Manner& manner : kManners) {
+      for (const std::string scheme : {"euler", "semi-implicit", "midpoint", "rk4"}) {
+        const int n = 540;
+        const double h = 1.0 / 600, more = scheme == "euler" ? -n : scheme == "semi-implicit" ? n : 0;
+        const TextRun run(
+            (space ? space_without_walls(manner, "gravity = [0, -10, 0]")
+                   : plane_without_walls(manner, "gravity = [0, -10]")) +
+                fmt::format("[[ball]]\nradius = 0.2\nposition = [1, 2{0}]\nvelocity = [3, 1{0}]\n",
+                            space ? ", 0" : ""),
+            {"physics.integrator=" + scheme, "physics.rate=600"});
+        const sim::Snapshot::Body now = run.at(n * h).bodies[0];
+        EXPECT_NEAR(now.position.x(), 1 + 3 * n * h, 1e-12) << manner.name << scheme << space;
+        EXPECT_NEAR(now.position.y(), 2 + n * h - 5 * h * h * (n * n + more), 1e-12) << manner.name << scheme;
+        EXPECT_NEAR(now.velocity.y(), 1 - 10 * n * h, 1e-12) << manner.name << scheme << space;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

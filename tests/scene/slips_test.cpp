@@ -54,7 +54,8 @@ TEST(Slips, BeginWhereFrictionIsUsedUp) {
   }
 }
 
-// What flies touches nothing, by every scheme: x = 2 + 3 t, and y = 6 - 5 t^2, to the first order in the step.
+// What flies touches nothing, by every scheme: x = 2 + 3 t, and y = 6 - 5 t^2, to the first order in the
+// step.
 TEST(Slips, WhatFliesIsHeldByNothingByEveryScheme) {
   for (const bool space : {false, true}) {
     for (const std::string scheme : {"rk4", "midpoint", "semi-implicit", "euler"}) {

@@ -45,6 +45,34 @@ TEST(StaticFriction, IsWhatAForceMustOvercome) {
   }
 }
 
+// A force of 2 N/s on a block of 1 kg slips it at t0 = mu_s g / 2 s, whatever share of the load its front and
+// its rear edge bear (the block's height makes them differ); and then
+//   x = (t^3 - t0^3) / 3 - t0^2 (t - t0) - mu g (t - t0)^2 / 2
+// up to a slip that begins some 1e-9 s late, and so is slower by (mu_s - mu) g times that
+TEST(StaticFriction, IsThatOfAllContactsTogether) {
+  struct Block {
+    double height, rests, slips;
+  };
+  for (const bool space : {false, true}) {
+    for (const auto& [height, rests, slips] :
+         {Block{0.08, 0.6, 0.4}, Block{0.1, 0.6, 0.4}, Block{0.12, 0.6, 0.4}, Block{0.2, 0.3, 0.2},
+          Block{0.3, 0.3, 0.2}, Block{0.1, 1, 0.5}, Block{0.02, 0.5, 0}}) {
+      const std::string scene = fmt::format(
+          "[[box]]\nname = \"b\"\nsize = [0.4, {0}{1}]\nposition = [8, {2}{3}]\nmass = 1\nelasticity = 0\n"
+          "friction = {4}\nstatic_friction = {5}\n[[force]]\ncomponents = [\"2*t\", \"0\"{6}]\n",
+          height, space ? ", 0.3" : "", height / 2, space ? ", 0" : "", slips, rests, space ? ", \"0\"" : "");
+      const double t0 = 5 * rests, t = t0 + 1;
+      const double way = (t * t * t - t0 * t0 * t0) / 3 - t0 * t0 - 5 * slips;
+      for (const int rate : {60, 600}) {
+        const TextRun run(floor_room(space, "event", rate, space ? "[0, -10, 0]" : "[0, -10]") + scene);
+        EXPECT_NEAR(run.place(t0 - 0.001).x(), 8, kToRounding) << space << height << rests << rate;
+        EXPECT_NEAR(run.place(t).x(), 8 + way, 4e-9 * 10 * (rests - slips))
+            << space << height << rests << rate;
+      }
+    }
+  }
+}
+
 // On a slope of slope 0.4, between the two, what lies stays, for ever, and what is pushed goes on:
 //   s = v t + g (sin - 0.3 cos) t^2 / 2
 TEST(StaticFriction, OnASlopeBetweenTheTwoWhatLiesStaysAndWhatSlidesGoesOn) {

@@ -254,6 +254,11 @@ class Account {
   const sim::SceneInfo& cast_;
   double soft_ = 0;
   std::optional<sim::Snapshot> first_, last_;
+  struct Bound {
+    double energy, time;  // J, s
+  };
+  Bound least_{1e300, 0}, greatest_{-1e300, 0};  // of the energy
+  double most_energy_ = 0;                       // J, of all its parts
   std::vector<Impact> impacts_;
   std::vector<Extremes> bodies_;
   std::vector<std::optional<double>> rest_;                         // since when
@@ -319,6 +324,10 @@ void Account::read(const sim::Snapshot& now) {
     if (now.joints[i].broken && !last_->joints[i].broken) broken_.emplace_back(now.time, int(i));
   if (!first_) first_ = now;
   last_ = now;
+  const sim::Energies& e = now.energies;
+  if (e.total() < least_.energy) least_ = {e.total(), now.time};
+  if (e.total() > greatest_.energy) greatest_ = {e.total(), now.time};
+  most_energy_ = std::max({most_energy_, std::abs(e.total()), e.kinetic, std::abs(e.potential())});
 }
 
 void Account::heed(const std::vector<sim::RunEvent>& events) {
@@ -482,14 +491,20 @@ std::vector<std::string> Account::ending() const {
     }
   }
   const double before = first_->energies.total(), after = last_->energies.total();
-  double most = std::max(std::abs(before), std::abs(after));
-  for (const sim::Snapshot* each : {&*first_, &*last_})
-    most = std::max({most, each->energies.kinetic, std::abs(each->energies.potential())});
-  if (!(most > 0)) return all;
-  if (std::abs(after - before) <= kSame * most)
+  const double same = kSame * most_energy_;
+  if (!(same > 0)) return all;
+  std::string between;
+  if (const double over = greatest_.energy - std::max(before, after); over > same)
+    between += fmt::format(", up to {} J at {}", numeral(greatest_.energy), when(greatest_.time));
+  if (const double under = std::min(before, after) - least_.energy; under > same)
+    between += fmt::format(", down to {} J at {}", numeral(least_.energy), when(least_.time));
+  if (std::abs(after - before) > same)
+    all.push_back(
+        fmt::format("The energy goes from {} J to {} J{}.", numeral(before), numeral(after), between));
+  else if (between.empty())
     all.push_back(fmt::format("The energy stays {} J.", numeral(before)));
   else
-    all.push_back(fmt::format("The energy goes from {} J to {} J.", numeral(before), numeral(after)));
+    all.push_back(fmt::format("The energy is {} J at the start and at the end{}.", numeral(before), between));
   return all;
 }
 

@@ -5,6 +5,7 @@
 // mu of what slips, and likewise mu_s >= mu of what does not.
 // The geometric mean is zero if one side is: ice under rubber slides, clay does not bounce.
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -51,6 +52,15 @@ Material mixed(Material body, const Surface& surface) requires requires {
       mixed(body.static_friction, surface.static_friction ? surface.static_friction : surface.friction);
   body.elasticity = mixed(body.elasticity, surface.elasticity);
   return body;
+}
+
+/// Whether anything of a model has another friction before it slips than then.
+template <int D>
+bool has_static_friction(const Model<D>& model) {
+  const auto given = [](const auto& all) {
+    return std::any_of(all.begin(), all.end(), [](const auto& it) { return it.static_friction.has_value(); });
+  };
+  return given(model.bodies) || given(model.walls) || given(model.rails);
 }
 
 /// Mixes the materials of body a and of b: another body, or wall -1 - b if b is negative.

@@ -219,9 +219,10 @@ void EnergyGuard<D>::gather(const State<D>& state) {
   for (const Grip<D>& grip : state.grips) {
     if (counts(grip.body)) island(grip.body).driven = true;
   }
-  // slowed before any contact, or by something no longer near
+  // slowed before any contact, or by something no longer near; but what falls by Euler's scheme gains by itself
+  const bool gains = model_.integrator == Integrator::euler;
   for (Island& it : sums_) {
-    if (it.touched || (it.tied && !it.jointed)) continue;
+    if (it.touched || (it.tied && !it.jointed) || gains) continue;
     if (it.gain > (it.jointed ? kJointed : kFlight) * it.kinetic) it.touched = it.rooted = true;
   }
 }

@@ -78,7 +78,7 @@ void WorkBooks<D>::close(State<D>& state, double t, double h) {
       if (i < still) continue;
       const int k = i - still;
       at.room_from_body = rotation<D>(between<D>(turn_[k], spin_[k], state.turn[k], state.spin[k], h, s));
-      at.w = r * spin_[k] + s * state.spin[k];
+      at.w = spin_between<D>(turn_[k], spin_[k], state.turn[k], state.spin[k], h, s);
     }
     double power = forces_.power(t + s * h, motions_);
     for (int i = 0; drag_ && i < n; ++i) {

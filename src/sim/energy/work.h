@@ -6,8 +6,8 @@
 
 namespace obscura::sim {
 
-/// The work (J) of forces without a potential, and of drag, added to State::work. The path through a step is
-/// the cubic between its ends; the power along it is integrated by Gauss's rule of two points, so the error
+/// The work (J) of forces without a potential, and of drag, added to State::work. The path and the
+/// turn through a step are cubics between its ends; the power along it is integrated by Gauss's rule of two points, so the error
 /// is of fourth order in the step.
 template <int D>
 class WorkBooks {

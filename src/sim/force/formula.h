@@ -25,9 +25,9 @@ enum : int { time = 16, end };
 struct ForceText {
   std::string potential;
   std::vector<std::string> components;
-  std::vector<std::string> torque;  // in the plane one, in space three
-  bool pair = false;                // between two bodies
-  bool centered = false;            // it has a centre
+  std::vector<std::string> torque{};  // in the plane one, in space three
+  bool pair = false;                  // between two bodies
+  bool centered = false;              // it has a centre
 };
 
 using NamedNumbers = std::vector<std::pair<std::string, double>>;

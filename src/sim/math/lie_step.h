@@ -97,6 +97,27 @@ Orientation<D> between(const Orientation<D>& from, const AngularVec<D>& w_from, 
   }
 }
 
+/// The angular velocity of that motion there, rad/s, room's frame. In space from the displacement d as
+///   w = d' - d x d' / 2 + d x (d x d') / 6      in the body's frame, with an error of the fourth order in h
+template <int D>
+AngularVec<D> spin_between(const Orientation<D>& from, const AngularVec<D>& w_from, const Orientation<D>& to,
+                           const AngularVec<D>& w_to, double h, double s) {
+  const double r = 1 - s;
+  const double q1 = 6 * s * r / h, n0 = r * (1 - 3 * s), n1 = s * (3 * s - 2);
+  if constexpr (D == 2) {
+    return q1 * (to - from) + n0 * w_from + n1 * w_to;
+  } else {
+    const AngularVec<D> whole = logarithm(product(inverse<D>(from), to));
+    const AngularVec<D> begun = from_room<D>(rotation<D>(from), w_from),
+                        ended = turn_rate(whole, from_room<D>(rotation<D>(to), w_to));
+    const AngularVec<D> d = s * s * (3 - 2 * s) * whole + h * s * r * (r * begun - s * ended),
+                        rate = q1 * whole + n0 * begun + n1 * ended;
+    const AngularVec<D> across = d.cross(rate);
+    return to_room<D>(rotation<D>(sim::turned(from, d)),
+                      AngularVec<D>(rate - across / 2 + d.cross(across) / 6));
+  }
+}
+
 /// The angle of a turn in the plane, whole rounds included; zero in space, where the rotation says all.
 template <int D>
 AngularVec<D> rounds([[maybe_unused]] const Orientation<D>& turn) {

@@ -27,7 +27,7 @@ struct SceneInfo {
     std::vector<Vec3> vertices;    // of a polygon or hull, in its own frame from its centre of mass, m
     std::vector<DrawnForm> parts;  // of a compound
     std::vector<std::vector<int>> faces = {};  // of a hull: loops of vertices, counter-clockwise from outside
-    double friction = 0;                       // Coulomb's mu of what does not slip
+    double friction = 0, static_friction = 0;  // Coulomb's mu, and that of what does not slip
     bool bare = false;                         // it has no form but its rails
   };
   /// A curve on which others roll and slide, or which runs through them.
@@ -36,12 +36,12 @@ struct SceneInfo {
     int body = -1;             // -1: the room
     std::vector<Vec3> places;  // along it, in the body's frame, m
     bool closed = false;
-    bool left = false, right = false;  // the sides that are touched; neither: a wire
-    std::optional<double> friction{};  // none: the other body's own holds
+    bool left = false, right = false;                     // the sides that are touched; neither: a wire
+    std::optional<double> friction{}, static_friction{};  // none: the other body's own holds
   };
   struct Wall {
     Vec3 point, normal;
-    std::optional<double> friction{};  // none: the body's own holds
+    std::optional<double> friction{}, static_friction{};  // none: the body's own holds
   };
   struct Spring {
     int a = -1, b = -1;  // bodies; -1: the room
@@ -164,7 +164,7 @@ struct Snapshot {
   Vec3 angular_momentum = Vec3::Zero();  // about the origin, kg m^2/s; in the plane (0, 0, L)
 };
 
-/// Coulomb's mu between the two that touch.
+/// Coulomb's mu between the two that touch, as they slip or not.
 double friction(const SceneInfo& cast, const Snapshot::Contact& contact);
 
 /// The paths of chosen bodies on the physics clock, the same for every frame rate; trails are drawn from

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "sim/constraint/joints/joint.h"
+#include "sim/constraint/material.h"
 #include "sim/solve/exact/exact.h"
 #include "sim/solve/iterate/plane.h"
 #include "sim/solve/iterate/space.h"
@@ -85,6 +86,7 @@ Solver solver(const Model<D>& model) {
   if (!model.chains.empty()) return Solver::direct;                     // links are sides of its rows alone
   if (!model.rails.empty() || has_wires(model)) return Solver::direct;  // curves are its alone
   if (model.solver != Solver::automatic) return model.solver;
+  if (has_static_friction(model)) return Solver::direct;  // alike
   return body_counts(model).template few<D>() ? Solver::direct : Solver::iterative;
 }
 

@@ -40,7 +40,8 @@ template <int D>
 SceneInfo::Body shown(const Body<D>& body) {
   SceneInfo::Body it;
   it.name = body.name;
-  it.mass = body.mass, it.friction = body.static_friction.value_or(body.friction);
+  it.mass = body.mass;
+  it.friction = body.friction, it.static_friction = body.static_friction.value_or(body.friction);
   it.fixed = body.fixed, it.turns = body.turns(), it.bare = body.bare;
   std::vector<DrawnForm> forms = of_form(body.shape, [](const auto& form) { return form.drawn(); });
   if (forms.size() > 1 || form<Compound<D>>(body.shape)) {
@@ -219,14 +220,15 @@ Vec<D> velocity(const State<D>& state, const End<D>& end) {
 }  // namespace
 
 double friction(const SceneInfo& cast, const Snapshot::Contact& contact) {
+  const auto of = [&](const auto& it) { return contact.sliding ? it.friction : it.static_friction; };
   if (contact.rail >= 0) {
     const SceneInfo::Rail& rail = cast.rails[std::size_t(contact.rail)];
     const int other = contact.body == rail.body ? contact.other : contact.body;
-    return mixed(cast.bodies[std::size_t(other)].friction, rail.friction);
+    return mixed(of(cast.bodies[std::size_t(other)]), of(rail));
   }
-  const double own = cast.bodies[std::size_t(contact.body)].friction;
-  if (contact.other >= 0) return mixed(own, cast.bodies[std::size_t(contact.other)].friction);
-  return mixed(own, cast.walls[std::size_t(contact.wall)].friction);
+  const double own = of(cast.bodies[std::size_t(contact.body)]);
+  if (contact.other >= 0) return mixed(own, of(cast.bodies[std::size_t(contact.other)]));
+  return mixed(own, of(cast.walls[std::size_t(contact.wall)]));
 }
 
 template <int D>
@@ -245,7 +247,7 @@ SceneInfo cast(const Model<D>& model, const State<D>& start, const std::vector<P
   for (const Body<D>& body : model.bodies) cast.bodies.push_back(shown(body));
   for (const Drive<D>& drive : model.drives) cast.bodies[std::size_t(drive.body)].fixed = false;
   for (const Wall<D>& wall : model.walls)
-    cast.walls.push_back({to_3d<D>(wall.point), to_3d<D>(wall.normal),
+    cast.walls.push_back({to_3d<D>(wall.point), to_3d<D>(wall.normal), wall.friction,
                           wall.static_friction ? wall.static_friction : wall.friction});
   // both ways are drawn as lines; beads of one wire share it
   std::vector<const Curve<D>*> drawn;
@@ -261,7 +263,9 @@ SceneInfo cast(const Model<D>& model, const State<D>& start, const std::vector<P
     SceneInfo::Rail* it = add_curve(rail.name, rail.body, *rail.curve);
     // of space from all sides
     if (it) it->left = D == 3 || rail.left, it->right = D == 3 || rail.right;
-    if (it) it->friction = rail.static_friction ? rail.static_friction : rail.friction;
+    if (it)
+      it->friction = rail.friction,
+      it->static_friction = rail.static_friction ? rail.static_friction : rail.friction;
   }
   for (const Joint<D>& joint : model.joints)
     if (joint.curve) add_curve(joint.name, joint.b.body, *joint.curve);

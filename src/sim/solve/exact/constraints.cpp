@@ -306,9 +306,8 @@ bool ExactSolver<D>::begin_to_slip() {
   for (const Constraint& constraint : constraints_) {
     if (constraint.kind != Constraint::Kind::contact || modes_[constraint.block].kind != ModeKind::slide)
       continue;
-    const double mu = material(candidates_[constraint.of].key).friction;
-    any = any || mu < blocks_[constraint.block].mu;
-    blocks_[constraint.block].mu = mu;
+    any = any || grips(constraint);
+    blocks_[constraint.block].mu = material(candidates_[constraint.of].key).friction;
   }
   return any;
 }

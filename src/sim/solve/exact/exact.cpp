@@ -349,6 +349,10 @@ void ExactSolver<D>::release_contact() {
     if (f_[constraint.first] <= interval_.slight) {
       mode.kind = ModeKind::open;
       f_.segment(constraint.first, D).setZero();
+    } else if (left <= interval_.slight && mode.kind != ModeKind::slide && grips(constraint) &&
+               !bears_alone(*progress_.released)) {
+      progress_.unclear.push_back(
+          *progress_.released);  // others bear on; lawful_length() finds where none do
     } else if (left <= interval_.slight && mode.kind != ModeKind::slide) {
       mode.kind = ModeKind::slide, mode.along = -drag / std::sqrt(drag.squaredNorm());
     } else if (left > 0.25 * progress_.reserve_at_release) {

@@ -365,6 +365,10 @@ class ExactSolver final : public ContactSolver<D>, private System {
   bool rub_wires();
   void let_go_of_wires(State<D>& state);
 
+  // whether a contact has more friction at hand than where it slips
+  bool grips(const Constraint& contact) const {
+    return material(candidates_[contact.of].key).friction < blocks_[contact.block].mu;
+  }
   Material material(const ContactKey& key) const {
     if (const Rail<D>* rail = rail_of(model_, key))
       return mixed(Material(model_.bodies[rail->body == key.a ? key.b : key.a]), *rail);
