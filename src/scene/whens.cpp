@@ -692,9 +692,9 @@ void ready_to_let_go(const Node& top, const NameTable& roster, sim::World<D>& wo
       }
       const bool moves = !model.bodies[std::size_t(body)].fixed;
       if (moves && std::find(held.begin(), held.end(), body) == held.end()) {
-        complaints.add(node.place,
-                       fmt::format("'release' lets go what is 'fixed' or has a 'motion', and {} is free",
-                                   scene::quoted(model.bodies[std::size_t(body)].name)));
+        complaints.add(node.place, fmt::format("{} lets go what is 'fixed' or has a 'motion', and {} is free",
+                                               release ? "'release'" : "fixed = false",
+                                               scene::quoted(model.bodies[std::size_t(body)].name)));
         return;
       }
       sim::Drive<D> drive;
