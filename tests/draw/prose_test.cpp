@@ -23,7 +23,10 @@ TEST(Prose, DollarsHoldMathematicsAsInPandoc) {
 
 TEST(Prose, IsReadInLetters) {
   EXPECT_EQ(in_letters("Energy $E = \\frac{1}{2} m v^2$ of $q_0$"), "Energy E = ½ m v² of q₀");
-  EXPECT_EQ(in_letters("$\\sqrt{2gh}$, $\\sqrt[3]{V}$, $\\int_0^1 x$"), "√2gh, ³√V, ∫₀¹ x");
+  EXPECT_EQ(in_letters("$\\sqrt{2gh}$, $\\sqrt[3]{V}$, $\\int_0^1 x$"), "√(2gh), ³√V, ∫₀¹ x");
+  EXPECT_EQ(in_letters("$\\frac{v_0^2}{2\\mu g}$, $\\frac{v_0}{12.5}$, $\\sqrt{\\hat{a}}$"),
+            "v₀²/(2μ g), v₀/12.5, √a\u0302");
+  EXPECT_EQ(in_letters("$\\left. x \\right|$"), " x |");
   EXPECT_EQ(in_letters("$\\frac{f + g}{N}$ and $\\dot{q}$, $x^{ab}$"), "(f + g)/N and q̇, x^(ab)");
   EXPECT_EQ(in_letters("costs $5 or $10"), "costs $5 or $10");
   EXPECT_EQ(formula_in_letters("E_{kin} = *v* \\cdot \\text{all}"), "E_kin = v · all");

@@ -87,7 +87,29 @@ class Speller {
   // in brackets, unless it is one number or one name
   std::string factor(std::string_view text) const {
     std::string inner = spell(text);
-    return inner.find_first_of(" +-/=") == inner.npos ? inner : "(" + inner + ")";
+    return one(inner) ? inner : "(" + inner + ")";
+  }
+
+  // "12.5", "θ", "v₀", "E_kin"
+  static bool one(std::string_view letters) {
+    const std::size_t number = letters.find_first_not_of("0123456789.");
+    if (number == letters.npos) return true;
+    if (number > 0) return false;
+    const auto character = [&](std::size_t at) {
+      std::size_t end = at + 1;
+      while (end < letters.size() && (static_cast<unsigned char>(letters[end]) & 0xC0) == 0x80) ++end;
+      return letters.substr(at, end - at);
+    };
+    const auto beside = [](std::string_view one) {
+      const auto is = [&](const auto& each) { return each.second == one; };
+      return std::any_of(kRaised.begin(), kRaised.end(), is) ||
+             std::any_of(kLowered.begin(), kLowered.end(), is) ||
+             std::find(std::begin(kCombining), std::end(kCombining), one) != std::end(kCombining);
+    };
+    std::size_t at = character(0).size();
+    while (at < letters.size() && beside(character(at))) at += character(at).size();
+    return at == letters.size() ||
+           (letters[at] == '_' && letters.find_first_of(" +-/=^", at) == letters.npos);
   }
 
   std::string command(std::string_view text, std::size_t& i, const std::string& before) const {
@@ -123,7 +145,10 @@ class Speller {
           index = spell(text.substr(i + 1, end - i - 1)), i = end + 1;
       return script(index, kRaised, "") + "√" + factor(next());
     }
-    if (word == "left" || word == "right") return "";
+    if (word == "left" || word == "right") {
+      if (i < text.size() && text[i] == '.') ++i;  // no bracket
+      return "";
+    }
     if (formulas::among(formulas::kForms, word)) return spell(next());
     if (const formulas::Name* sign = formulas::entry(formulas::kLarge, word))
       return std::string(sign->symbol);
