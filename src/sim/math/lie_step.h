@@ -79,39 +79,50 @@ Orientation<D> displaced(const Orientation<D>& turn, const AngularVec<D>& d) {
   }
 }
 
+/// A displacement of the orientation (rad) and its rate (rad/s), in the body's frame where it begins.
+struct MovingDisplacement {
+  AngularVec<3> d, rate;
+};
+
+/// From the first of two orientations, at the fraction s of the way to the other, h (s) apart, with the
+/// angular velocities w (rad/s, room's frame) at either end: the cubic Hermite interpolant.
+inline MovingDisplacement displacement_between(const Orientation<3>& from, const AngularVec<3>& w_from,
+                                               const Orientation<3>& to, const AngularVec<3>& w_to, double h,
+                                               double s) {
+  const double r = 1 - s;
+  const AngularVec<3> whole = logarithm(product(inverse<3>(from), to));
+  const AngularVec<3> begun = from_room<3>(rotation<3>(from), w_from),
+                      ended = turn_rate(whole, from_room<3>(rotation<3>(to), w_to));
+  const double p1 = s * s * (3 - 2 * s), m0 = h * s * r * r, m1 = -h * s * s * r;
+  return {p1 * whole + m0 * begun + m1 * ended,
+          6 * s * r / h * whole + r * (1 - 3 * s) * begun + s * (3 * s - 2) * ended};
+}
+
 /// The orientation at the fraction s of the way between two, h (s) apart, with the angular velocities w
-/// (room's frame) at either end: the cubic Hermite interpolant of the displacement from the first. In the
-/// plane that of the angles.
+/// (rad/s, room's frame) at either end. In the plane the cubic of the angles.
 template <int D>
 Orientation<D> between(const Orientation<D>& from, const AngularVec<D>& w_from, const Orientation<D>& to,
                        const AngularVec<D>& w_to, double h, double s) {
-  const double r = 1 - s;
-  const double p0 = r * r * (1 + 2 * s), p1 = s * s * (3 - 2 * s), m0 = h * s * r * r, m1 = -h * s * s * r;
   if constexpr (D == 2) {
+    const double r = 1 - s;
+    const double p0 = r * r * (1 + 2 * s), p1 = s * s * (3 - 2 * s), m0 = h * s * r * r, m1 = -h * s * s * r;
     return p0 * from + p1 * to + m0 * w_from + m1 * w_to;
   } else {
-    const AngularVec<D> d = logarithm(product(inverse<D>(from), to));
-    const AngularVec<D> begun = from_room<D>(rotation<D>(from), w_from),
-                        ended = turn_rate(d, from_room<D>(rotation<D>(to), w_to));
-    return sim::turned(from, AngularVec<D>(p1 * d + m0 * begun + m1 * ended));
+    return sim::turned(from, displacement_between(from, w_from, to, w_to, h, s).d);
   }
 }
 
-/// The angular velocity of that motion there, rad/s, room's frame. In space from the displacement d as
+/// The angular velocity of that motion there, rad/s, room's frame. In space of the displacement d
 ///   w = d' - d x d' / 2 + d x (d x d') / 6      in the body's frame, with an error of the fourth order in h
+/// Source: the series of the inverse of turn_rate().
 template <int D>
 AngularVec<D> spin_between(const Orientation<D>& from, const AngularVec<D>& w_from, const Orientation<D>& to,
                            const AngularVec<D>& w_to, double h, double s) {
-  const double r = 1 - s;
-  const double q1 = 6 * s * r / h, n0 = r * (1 - 3 * s), n1 = s * (3 * s - 2);
   if constexpr (D == 2) {
-    return q1 * (to - from) + n0 * w_from + n1 * w_to;
+    const double r = 1 - s;
+    return 6 * s * r / h * (to - from) + r * (1 - 3 * s) * w_from + s * (3 * s - 2) * w_to;
   } else {
-    const AngularVec<D> whole = logarithm(product(inverse<D>(from), to));
-    const AngularVec<D> begun = from_room<D>(rotation<D>(from), w_from),
-                        ended = turn_rate(whole, from_room<D>(rotation<D>(to), w_to));
-    const AngularVec<D> d = s * s * (3 - 2 * s) * whole + h * s * r * (r * begun - s * ended),
-                        rate = q1 * whole + n0 * begun + n1 * ended;
+    const auto [d, rate] = displacement_between(from, w_from, to, w_to, h, s);
     const AngularVec<D> across = d.cross(rate);
     return to_room<D>(rotation<D>(sim::turned(from, d)),
                       AngularVec<D>(rate - across / 2 + d.cross(across) / 6));

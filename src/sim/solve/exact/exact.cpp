@@ -349,12 +349,12 @@ void ExactSolver<D>::release_contact() {
     if (f_[constraint.first] <= interval_.slight) {
       mode.kind = ModeKind::open;
       f_.segment(constraint.first, D).setZero();
-    } else if (left <= interval_.slight && mode.kind != ModeKind::slide && grips(constraint) &&
-               !bears_alone(*progress_.released)) {
-      progress_.unclear.push_back(
-          *progress_.released);  // others bear on; lawful_length() finds where none do
     } else if (left <= interval_.slight && mode.kind != ModeKind::slide) {
-      mode.kind = ModeKind::slide, mode.along = -drag / std::sqrt(drag.squaredNorm());
+      // others may bear on: lawful_length() finds where none does
+      if (grips(constraint) && !bears_alone(*progress_.released))
+        progress_.unclear.push_back(*progress_.released);
+      else
+        mode.kind = ModeKind::slide, mode.along = -drag / std::sqrt(drag.squaredNorm());
     } else if (left > 0.25 * progress_.reserve_at_release) {
       progress_.unclear.push_back(
           *progress_.released);  // one of many that may bear the same load: its force tells nothing
