@@ -81,7 +81,7 @@ Frame frame_of(const Pixels& pixels) {
   return {int(pixels.shape(1)), int(pixels.shape(0)), {pixels.data(), std::size_t(pixels.size())}, 0, 0, ""};
 }
 
-// of three colours, or of four; of floating-point numbers nobody knows whether 1 or 255 is white
+// of three colours, or of four; floating-point numbers do not tell whether 1 or 255 is white
 Pixels with_alpha(const py::handle& given) {
   const py::array all = py::array::ensure(given);
   if (!all || (all.dtype().kind() != 'u' && all.dtype().kind() != 'i'))

@@ -203,7 +203,7 @@ void walk(const std::string& name, const std::vector<std::string>& sets = {}) {
     }
     for (const draw::Text& text : list.texts) {
       const std::string letters = said(text).substr(0, 3);
-      // which of several alike it was nobody knows
+      // several alike do not tell which of them it was
       if (std::count_if(list.texts.begin(), list.texts.end(),
                         [&](const draw::Text& other) { return said(other).substr(0, 3) == letters; }) > 1)
         continue;
