@@ -17,12 +17,15 @@
 #include "app/console/exit.h"
 #include "app/console/interrupt.h"
 #include "app/run/compared.h"
+#include "app/run/telling.h"
 #include "app/run/trouble.h"
 #include "draw/page/measure.h"
 #include "draw/picture/prose.h"
 #include "scene/complaints.h"
 
 namespace obscura::app {
+
+using namespace telling;
 
 namespace {
 
@@ -31,153 +34,6 @@ constexpr std::size_t kToldSingly = 6;        // bodies, impacts: told one by on
 constexpr std::size_t kMostHappenings = 300;  // impacts that are listed
 constexpr double kSoft = 0.02;                // of sqrt(g L): slower is no impact
 constexpr double kSame = 1e-3;                // of the energy: it has not changed
-constexpr double kNoMotion = 1e-9;            // of the room's height a second: slower does not move
-constexpr double kNothing = 1e-30, kSmall = 1e-4, kLarge = 1e6;  // numbers that are told as 0, with a power
-
-// three digits that count; of what is very small or large with a power of ten: 2.5e-6
-std::string numeral(double x) {
-  if (!(std::abs(x) > kNothing)) return "0";
-  if (!(std::abs(x) >= kSmall && std::abs(x) < kLarge)) {
-    const std::string text = fmt::format("{:.2e}", x);
-    const std::size_t e = text.find('e');
-    std::string digits = text.substr(0, e);
-    while (digits.back() == '0') digits.pop_back();
-    if (digits.back() == '.') digits.pop_back();
-    return fmt::format("{}e{}", digits, std::stoi(text.substr(e + 1)));
-  }
-  const int decimals = std::clamp(2 - int(std::floor(std::log10(std::abs(x)))), 0, 9);
-  std::string text = fmt::format("{:.{}f}", x, decimals);
-  if (decimals == 0) return text;
-  while (text.back() == '0') text.pop_back();
-  if (text.back() == '.') text.pop_back();
-  return text;
-}
-
-// to a thousandth of what all lasts, or is long, but that where it is longer than 1
-double rounded(double x, double all) {
-  const double unit = 1e-3 * std::min(1.0, std::pow(10.0, std::floor(std::log10(std::max(all, kNothing)))));
-  const double parts = std::round(1 / unit);
-  return std::round(x * parts) / parts;
-}
-
-std::string time(double t, double duration) { return numeral(rounded(t, duration)) + " s"; }
-
-std::string whereabouts(const sim::Vec3& p, const sim::SceneInfo& cast) {
-  const int dimension = cast.dimension;
-  const auto at = [&](double x) { return numeral(rounded(x, cast.scale)); };
-  return dimension == 2 ? fmt::format("({}, {}) m", at(p.x()), at(p.y()))
-                        : fmt::format("({}, {}, {}) m", at(p.x()), at(p.y()), at(p.z()));
-}
-
-// "the ball", "brick[3]"
-std::string called(const sim::SceneInfo& cast, int body) {
-  std::string name = scene::one_line(cast.bodies[std::size_t(body)].name);
-  if (name.find('[') != name.npos) return name;
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return "the " + name;
-}
-
-std::string capital(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = char(text[0] - 'a' + 'A');
-  return text;
-}
-
-std::string wall(const sim::SceneInfo& cast, int index) {
-  const sim::Vec3 n = cast.walls[std::size_t(index)].normal.normalized();
-  if (n.y() > 0.999) return "the floor";
-  if (n.y() < -0.999) return "the ceiling";
-  if (n.x() > 0.999) return "the left wall";
-  if (n.x() < -0.999) return "the right wall";
-  return n.y() > 0.05 ? "the slope" : "a wall";
-}
-
-// "at 3 m/s to the right and up"
-std::string motion(const sim::Vec3& v, const sim::SceneInfo& cast) {
-  const int dimension = cast.dimension;
-  const double speed = v.norm();
-  std::vector<std::string> way;
-  if (dimension == 2 && std::abs(v.x()) > 0.3 * speed)
-    way.emplace_back(v.x() > 0 ? "to the right" : "to the left");
-  if (std::abs(v.y()) > 0.3 * speed) way.emplace_back(v.y() > 0 ? "up" : "down");
-  return fmt::format("at {} m/s{}{}", numeral(speed), way.empty() ? "" : " ", fmt::join(way, " and "));
-}
-
-// "moves at 3 m/s to the right", "does not move"
-std::string moves(const sim::Vec3& v, const sim::SceneInfo& cast) {
-  return v.norm() > kNoMotion * cast.scale ? "moves " + motion(v, cast) : "does not move";
-}
-
-// "a, b and c"
-std::string together(std::vector<std::string> all) {
-  if (all.empty()) return "";
-  const std::string last = all.back();
-  all.pop_back();
-  return all.empty() ? last : fmt::format("{} and {}", fmt::join(all, ", "), last);
-}
-
-// title and subtitle of a scene
-std::string headline(const draw::Look& look) {
-  return draw::in_letters(look.title) +
-         (look.subtitle.empty() ? "." : ": " + draw::in_letters(look.subtitle) + ".");
-}
-
-// "normal force": a quantity as the table of quantities calls it
-std::string words_of(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
-
-std::string count(std::size_t n, const char* one, const char* many) {
-  return n == 1 ? fmt::format("one {}", one) : fmt::format("{} {}", n, many);
-}
-
-const char* kind(const sim::SceneInfo& cast, const sim::SceneInfo::Body& body, bool many) {
-  switch (body.kind) {
-    case sim::ShapeKind::point:
-      return many ? "particles" : "particle";
-    case sim::ShapeKind::ball:
-      return cast.dimension == 2 ? (many ? "discs" : "disc") : many ? "balls" : "ball";
-    case sim::ShapeKind::box:
-      return many ? "boxes" : "box";
-    case sim::ShapeKind::capsule:
-      return many ? "capsules" : "capsule";
-    default:
-      return many ? "bodies" : "body";
-  }
-}
-
-std::vector<int> moving(const sim::SceneInfo& cast) {
-  std::vector<int> all;
-  for (std::size_t i = 0; i < cast.bodies.size(); ++i)
-    if (!cast.bodies[i].fixed) all.push_back(int(i));
-  return all;
-}
-
-// "a ball, 3 boxes and 2 springs"
-std::string listed(const sim::SceneInfo& cast) {
-  std::vector<std::string> all;
-  std::map<int, std::pair<std::size_t, const sim::SceneInfo::Body*>> kinds;
-  std::vector<int> order;
-  std::size_t fixed = 0;
-  for (const sim::SceneInfo::Body& body : cast.bodies) {
-    if (body.bare || (body.fixed && ++fixed)) continue;
-    auto& [n, first] = kinds[int(body.kind)];
-    if (n++ == 0) first = &body, order.push_back(int(body.kind));
-  }
-  for (const int each : order) {
-    const auto& [n, first] = kinds[each];
-    all.push_back(n == 1 ? fmt::format("one {}", kind(cast, *first, false))
-                         : fmt::format("{} {}", n, kind(cast, *first, true)));
-  }
-  if (fixed > 0) all.push_back(count(fixed, "fixed body", "fixed bodies"));
-  if (!cast.springs.empty()) all.push_back(count(cast.springs.size(), "spring", "springs"));
-  const auto joints =
-      std::size_t(std::count_if(cast.joints.begin(), cast.joints.end(),
-                                [](const auto& joint) { return joint.kind != sim::JointKind::wire; }));
-  if (joints > 0) all.push_back(count(joints, "joint", "joints"));
-  if (!cast.rails.empty()) all.push_back(count(cast.rails.size(), "track", "tracks"));
-  return all.empty() ? "nothing" : together(all);
-}
 
 // what arrows and plots of a film show
 std::vector<std::string> shown(const scene::Film& film, const sim::SceneInfo& cast) {
@@ -189,7 +45,7 @@ std::vector<std::string> shown(const scene::Film& film, const sim::SceneInfo& ca
     if (of == bodies.end()) of = bodies.insert(of, {each.body, {}});
     std::string what = "position";
     for (const std::string& name : draw::arrows())
-      if (draw::measure(name)->arrow == each.quantity) what = words_of(name);
+      if (draw::measure(name)->arrow == each.quantity) what = draw::in_words(name);
     if (std::find(of->second.begin(), of->second.end(), what) == of->second.end()) of->second.push_back(what);
   }
   std::vector<std::string> all;
@@ -198,11 +54,11 @@ std::vector<std::string> shown(const scene::Film& film, const sim::SceneInfo& ca
       all.push_back(fmt::format("Arrows show {} of {}.", together(quantities), called(cast, body)));
   for (const draw::Chart& chart : film.charts) {
     std::vector<std::string> quantities, of;
-    for (const std::string& each : chart.quantities) quantities.push_back(words_of(each));
+    for (const std::string& each : chart.quantities) quantities.push_back(draw::in_words(each));
     for (const int body : chart.bodies) of.push_back(called(cast, body));
     all.push_back(fmt::format("A plot shows {}{} over {}.", together(quantities),
                               of.empty() ? "" : " of " + together(of),
-                              chart.against.empty() ? "time" : words_of(chart.against)));
+                              chart.against.empty() ? "time" : draw::in_words(chart.against)));
   }
   return all;
 }
@@ -360,8 +216,7 @@ std::vector<std::string> Account::beginning() const {
   const std::vector<int> bodies = moving(cast_);
   if (bodies.size() > kToldSingly) {
     std::size_t resting = 0;
-    for (const int body : bodies)
-      resting += !(first_->bodies[std::size_t(body)].velocity.norm() > kNoMotion * cast_.scale);
+    for (const int body : bodies) resting += stands(first_->bodies[std::size_t(body)].velocity, cast_);
     if (resting == bodies.size()) all.emplace_back("All start without velocity.");
     return all;
   }
@@ -369,9 +224,9 @@ std::vector<std::string> Account::beginning() const {
     const sim::Snapshot::Body& it = first_->bodies[std::size_t(body)];
     all.push_back(capital(
         fmt::format("{} starts at {}, {}.", called(cast_, body), whereabouts(it.position, cast_),
-                    it.velocity.norm() > kNoMotion * cast_.scale ? motion(it.velocity, cast_)
-                    : it.spin.norm() > 1e-9 ? fmt::format("turning at {} rad/s", numeral(it.spin.norm()))
-                                            : std::string("at rest"))));
+                    !stands(it.velocity, cast_) ? motion(it.velocity, cast_)
+                    : it.spin.norm() > 1e-9     ? fmt::format("turning at {} rad/s", numeral(it.spin.norm()))
+                                                : std::string("at rest"))));
   }
   return all;
 }

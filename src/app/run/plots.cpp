@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -155,29 +156,30 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
     }
 
     const std::vector<draw::Measured::Line> lines = wanted.lines();
-    const auto run = scene.shown_run();
-    run->heed(interrupted);
-    const sim::Rational stride = (wanted.to - wanted.from) / sim::rational(kPoints);
-    bool touched = false;
     const draw::Plot empty = plot;
-    for (std::int64_t i = 0; i <= kPoints; ++i) {
-      const sim::Rational t = i < kPoints ? wanted.from + sim::rational(i) * stride : wanted.to;
-      const sim::Snapshot now = moment(*run, t, scene);
-      touched = touched || !now.contacts.empty();
-      add(run->scene_info(), now, wanted, lines, plot);
-    }
-    // few steps that nothing interrupts: parts of steps, which a scheme of low order takes otherwise, would
-    // be kinks between them
-    const std::int64_t first = sim::floor(wanted.from * run->rate()) + 1,
-                       last = sim::ceil(wanted.to * run->rate());
-    if (!touched && last - first < kPoints / kFewSteps) {
+    // the values at some instants, the last at the end; whether anything touched then
+    const auto draw_at = [&](std::int64_t many, const std::function<sim::Rational(std::int64_t)>& instant) {
+      const auto run = scene.shown_run();
+      run->heed(interrupted);
+      bool touched = false;
       plot = empty;
-      const auto again = scene.shown_run();
-      again->heed(interrupted);
-      add(again->scene_info(), moment(*again, wanted.from, scene), wanted, lines, plot);
-      for (std::int64_t k = first; k < last; ++k)
-        add(again->scene_info(), moment(*again, sim::rational(k) / run->rate(), scene), wanted, lines, plot);
-      add(again->scene_info(), moment(*again, wanted.to, scene), wanted, lines, plot);
+      for (std::int64_t i = 0; i <= many; ++i) {
+        const sim::Snapshot now = moment(*run, i < many ? instant(i) : wanted.to, scene);
+        touched = touched || !now.contacts.empty();
+        add(run->scene_info(), now, wanted, lines, plot);
+      }
+      return touched;
+    };
+    // few steps that nothing interrupts go from step to step: parts of steps, which a scheme of low order
+    // takes otherwise, would be kinks between them
+    const sim::Rational rate = scene.shown_run()->rate();
+    const std::int64_t before = sim::floor(wanted.from * rate), last = sim::ceil(wanted.to * rate);
+    const bool few = last - before <= kPoints / kFewSteps;
+    if (!few || draw_at(last - before, [&](std::int64_t i) {
+          return i == 0 ? wanted.from : sim::rational(before + i) / rate;
+        })) {
+      const sim::Rational stride = (wanted.to - wanted.from) / sim::rational(kPoints);
+      draw_at(kPoints, [&](std::int64_t i) { return wanted.from + sim::rational(i) * stride; });
     }
     if (wanted.against.empty())
       plot.marks = marks;

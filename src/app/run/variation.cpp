@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "app/console/exit.h"
+#include "draw/page/measure.h"
 #include "sim/math/rational.h"
 
 namespace obscura::app {
@@ -130,9 +131,7 @@ std::string Variation::spoken(const std::string& value) {
       {"euler", "Euler"}, {"rk4", "Runge-Kutta"}, {"true", "yes"}, {"false", "no"}};
   for (const auto& [word, said] : kSpoken)
     if (value == word) return said;
-  std::string text = value;
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
+  return draw::in_words(value);
 }
 
 std::string Variation::words(const std::string& value) const {

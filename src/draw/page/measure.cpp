@@ -172,8 +172,14 @@ std::optional<Measured::Line> Measured::along(const Line& line) const {
   return Line{other, line.body};
 }
 
+std::string in_words(std::string_view name) {
+  std::string words(name);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
 std::string spoken(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
+  name = in_words(name);
   // one of several: "crate[2]"
   std::string number;
   if (const std::size_t bracket = name.find('['); bracket != name.npos && name.back() == ']')
@@ -185,8 +191,7 @@ namespace {
 
 // of an axis: beside others a line of the "normal force" is called "normal"
 std::string title(const Measure& measure) {
-  std::string words(measure.name);
-  std::replace(words.begin(), words.end(), '_', ' ');
+  const std::string words = in_words(measure.name);
   return words.starts_with(std::string(measure.label) + " ") ? words : measure.label;
 }
 

@@ -67,4 +67,7 @@ Plot empty_plot(const Measured& measured, const Palette& colours, const sim::Sce
 /// A name of a scene as mathematics: "left_bob" is a left bob, "crate[2]" a crate with an index.
 std::string spoken(std::string name);
 
+/// "normal force": a name of the scene or of the table in words.
+std::string in_words(std::string_view name);
+
 }  // namespace obscura::draw

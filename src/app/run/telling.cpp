@@ -1,0 +1,156 @@
+#include "app/run/telling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "draw/page/measure.h"
+#include "draw/picture/prose.h"
+#include "scene/complaints.h"
+
+namespace obscura::app::telling {
+
+namespace {
+
+constexpr double kNoMotion = 1e-9;  // of the room's height a second: slower does not move
+constexpr double kNothing = 1e-30, kSmall = 1e-4, kLarge = 1e6;  // numbers that are told as 0, with a power
+
+// to a thousandth of what all lasts, or is long, but that where it is longer than 1
+double rounded(double x, double all) {
+  const double unit = 1e-3 * std::min(1.0, std::pow(10.0, std::floor(std::log10(std::max(all, kNothing)))));
+  const double parts = std::round(1 / unit);
+  return std::round(x * parts) / parts;
+}
+
+const char* kind(const sim::SceneInfo& cast, const sim::SceneInfo::Body& body, bool many) {
+  switch (body.kind) {
+    case sim::ShapeKind::point:
+      return many ? "particles" : "particle";
+    case sim::ShapeKind::ball:
+      return cast.dimension == 2 ? (many ? "discs" : "disc") : many ? "balls" : "ball";
+    case sim::ShapeKind::box:
+      return many ? "boxes" : "box";
+    case sim::ShapeKind::capsule:
+      return many ? "capsules" : "capsule";
+    default:
+      return many ? "bodies" : "body";
+  }
+}
+
+}  // namespace
+
+std::string numeral(double x) {
+  if (!(std::abs(x) > kNothing)) return "0";
+  if (!(std::abs(x) >= kSmall && std::abs(x) < kLarge)) {
+    const std::string text = fmt::format("{:.2e}", x);
+    const std::size_t e = text.find('e');
+    std::string digits = text.substr(0, e);
+    while (digits.back() == '0') digits.pop_back();
+    if (digits.back() == '.') digits.pop_back();
+    return fmt::format("{}e{}", digits, std::stoi(text.substr(e + 1)));
+  }
+  const int decimals = std::clamp(2 - int(std::floor(std::log10(std::abs(x)))), 0, 9);
+  std::string text = fmt::format("{:.{}f}", x, decimals);
+  if (decimals == 0) return text;
+  while (text.back() == '0') text.pop_back();
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+std::string time(double t, double duration) { return numeral(rounded(t, duration)) + " s"; }
+
+std::string whereabouts(const sim::Vec3& p, const sim::SceneInfo& cast) {
+  const int dimension = cast.dimension;
+  const auto at = [&](double x) { return numeral(rounded(x, cast.scale)); };
+  return dimension == 2 ? fmt::format("({}, {}) m", at(p.x()), at(p.y()))
+                        : fmt::format("({}, {}, {}) m", at(p.x()), at(p.y()), at(p.z()));
+}
+
+std::string called(const sim::SceneInfo& cast, int body) {
+  const std::string name = scene::one_line(cast.bodies[std::size_t(body)].name);
+  return name.find('[') != name.npos ? name : "the " + draw::in_words(name);
+}
+
+std::string capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = char(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::string wall(const sim::SceneInfo& cast, int index) {
+  const sim::Vec3 n = cast.walls[std::size_t(index)].normal.normalized();
+  if (n.y() > 0.999) return "the floor";
+  if (n.y() < -0.999) return "the ceiling";
+  if (n.x() > 0.999) return "the left wall";
+  if (n.x() < -0.999) return "the right wall";
+  return n.y() > 0.05 ? "the slope" : "a wall";
+}
+
+std::string motion(const sim::Vec3& v, const sim::SceneInfo& cast) {
+  const int dimension = cast.dimension;
+  const double speed = v.norm();
+  std::vector<std::string> way;
+  if (dimension == 2 && std::abs(v.x()) > 0.3 * speed)
+    way.emplace_back(v.x() > 0 ? "to the right" : "to the left");
+  if (std::abs(v.y()) > 0.3 * speed) way.emplace_back(v.y() > 0 ? "up" : "down");
+  return fmt::format("at {} m/s{}{}", numeral(speed), way.empty() ? "" : " ", fmt::join(way, " and "));
+}
+
+bool stands(const sim::Vec3& v, const sim::SceneInfo& cast) { return !(v.norm() > kNoMotion * cast.scale); }
+
+std::string moves(const sim::Vec3& v, const sim::SceneInfo& cast) {
+  return stands(v, cast) ? "does not move" : "moves " + motion(v, cast);
+}
+
+std::string together(std::vector<std::string> all) {
+  if (all.empty()) return "";
+  const std::string last = all.back();
+  all.pop_back();
+  return all.empty() ? last : fmt::format("{} and {}", fmt::join(all, ", "), last);
+}
+
+std::string headline(const draw::Look& look) {
+  return draw::in_letters(look.title) +
+         (look.subtitle.empty() ? "." : ": " + draw::in_letters(look.subtitle) + ".");
+}
+
+std::string count(std::size_t n, const char* one, const char* many) {
+  return n == 1 ? fmt::format("one {}", one) : fmt::format("{} {}", n, many);
+}
+
+std::vector<int> moving(const sim::SceneInfo& cast) {
+  std::vector<int> all;
+  for (std::size_t i = 0; i < cast.bodies.size(); ++i)
+    if (!cast.bodies[i].fixed) all.push_back(int(i));
+  return all;
+}
+
+std::string listed(const sim::SceneInfo& cast) {
+  std::vector<std::string> all;
+  std::map<int, std::pair<std::size_t, const sim::SceneInfo::Body*>> kinds;
+  std::vector<int> order;
+  std::size_t fixed = 0;
+  for (const sim::SceneInfo::Body& body : cast.bodies) {
+    if (body.bare || (body.fixed && ++fixed)) continue;
+    auto& [n, first] = kinds[int(body.kind)];
+    if (n++ == 0) first = &body, order.push_back(int(body.kind));
+  }
+  for (const int each : order) {
+    const auto& [n, first] = kinds[each];
+    all.push_back(n == 1 ? fmt::format("one {}", kind(cast, *first, false))
+                         : fmt::format("{} {}", n, kind(cast, *first, true)));
+  }
+  if (fixed > 0) all.push_back(count(fixed, "fixed body", "fixed bodies"));
+  if (!cast.springs.empty()) all.push_back(count(cast.springs.size(), "spring", "springs"));
+  const auto joints =
+      std::size_t(std::count_if(cast.joints.begin(), cast.joints.end(),
+                                [](const auto& joint) { return joint.kind != sim::JointKind::wire; }));
+  if (joints > 0) all.push_back(count(joints, "joint", "joints"));
+  if (!cast.rails.empty()) all.push_back(count(cast.rails.size(), "track", "tracks"));
+  return all.empty() ? "nothing" : together(all);
+}
+
+}  // namespace obscura::app::telling
