@@ -450,4 +450,4 @@ struct Sweep {
 Sweep sweep(const Scene& scene, const std::vector<std::string>& vary, const std::vector<std::string>& measure,
             int jobs = 0);
 
-}  // namespace gnu::visibility("default")]]obscura
+}  // namespace obscura

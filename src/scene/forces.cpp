@@ -175,7 +175,7 @@ class ForceBuilder {
       if (middle && !(force.center = center(*middle))) return;
       for (const int body : acted_on(fields, force.center ? force.center->body : -1))
         force.subjects.push_back(subject(body));
-      if (torque && !turned_by(*torque, fields.given("of") != nullptr, force)) return;
+      if (torque && !turned_by(*torque, of != nullptr, force)) return;
       if (at && !turned_by(*at, of != nullptr, force)) return;
       for (Subject& it : force.subjects)
         if (at && turns(it)) it.local = roster_.seats[std::size_t(it.body)].seen(vector<D>(*at));
@@ -210,16 +210,15 @@ class ForceBuilder {
   bool turns(const Subject& it) const { return world_.model.bodies[std::size_t(it.body)].turns(); }
 
   // whether all that are named turn
-  bool turned_by(const Node& torque, bool named, Force& force) {
+  bool turned_by(const Node& by, bool named, const Force& force) {
     if (force.center && force.center->body >= 0) {
-      complaints_.add(torque.place,
-                      "a torque, or a potential of the angle, needs a 'center' that is a place: no body "
-                      "would feel the opposite");
+      complaints_.add(by.place,
+                      "what turns a body needs a 'center' that is a place: no body would feel the opposite");
       return false;
     }
     for (const Subject& it : force.subjects) {
       if (!named || turns(it)) continue;
-      complaints_.add(torque.place,
+      complaints_.add(by.place,
                       fmt::format("'{}' does not turn", world_.model.bodies[std::size_t(it.body)].name));
       return false;
     }

@@ -154,11 +154,7 @@ Picture Comparison::depict(const std::vector<Instant>& runs, double time, double
         const double size = kName * w * look_.type_scale;
         const std::string name = fitted(runs_[i].name, Face::bold, size, panels_[i].width);
         const Point at(panels_[i].x + kPlateAround * w, panels_[i].y - kNameRise * w * look_.type_scale);
-        if (contains_mathematics(name))
-          draw::add(prose(name, Face::bold, size, runs_[i].color), at, *list);
-        else
-          list->add(Text{
-              at, Align::left, {{.text = name, .face = Face::bold, .size = size, .color = runs_[i].color}}});
+        add_prose(name, Face::bold, size, runs_[i].color, at, Align::left, *list);
       }
       set_decimal_mark(*list, look_.decimal);
       still_->list = std::move(list), still_->parts = std::move(seen);

@@ -31,13 +31,7 @@ std::vector<std::string> balanced(const std::string& words, Face face, double si
 void centered(const std::vector<std::string>& lines, Face face, double size, double x, double& baseline,
               Color color, List& list) {
   for (const std::string& line : lines) {
-    if (contains_mathematics(line)) {
-      const Formula set = prose(line, face, size, color);
-      add(set, {x - set.width / 2, baseline}, list);
-    } else {
-      list.add(
-          Text{{x, baseline}, Align::center, {{.text = line, .face = face, .size = size, .color = color}}});
-    }
+    add_prose(line, face, size, color, {x, baseline}, Align::center, list);
     baseline += kLead * size;
   }
 }

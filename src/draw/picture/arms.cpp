@@ -7,7 +7,7 @@ namespace {
 
 using sim::Vec3;
 
-// the same of one convex form, whose frame it is
+// how far p, in the frame of one convex form, is from it, m
 double off(const auto& form, const Vec3& p) {
   switch (form.kind) {
     case sim::ShapeKind::point:

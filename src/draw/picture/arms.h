@@ -16,6 +16,9 @@ struct Arm {
   sim::Vec3 from, to;
 };
 
+/// Page units at the weight 1: a joint farther from its body has a line to it.
+inline constexpr double kArmBeyond = 16;
+
 /// The arms of bodies that a pin, a hinge or a weld holds at a place farther than `margin` (m) from them,
 /// without which they would hang from nothing.
 std::vector<Arm> arms(const sim::SceneInfo& cast, const sim::Snapshot& now, double margin);

@@ -220,6 +220,16 @@ Formula prose(std::string_view words, Face face, double size, Color color) {
   return all;
 }
 
+void add_prose(const std::string& words, Face face, double size, Color color, const Point& at, Align align,
+               List& list) {
+  if (!contains_mathematics(words)) {
+    list.add(Text{at, align, {{.text = words, .face = face, .size = size, .color = color}}});
+    return;
+  }
+  const Formula set = prose(words, face, size, color);
+  add(set, align == Align::center ? Point(at.x() - set.width / 2, at.y()) : at, list);
+}
+
 std::string in_letters(std::string_view words) {
   std::string all;
   for (const Phrase& phrase : phrases(words))

@@ -29,6 +29,10 @@ std::optional<FormulaMistake> prose_mistake(std::string_view words);
 /// A line of words in `face`, and of the mathematics in them, as high as they are.
 Formula prose(std::string_view words, Face face, double size, Color color);
 
+/// Adds words to a list, and the mathematics in them, at the left end of their baseline, or at its middle.
+void add_prose(const std::string& words, Face face, double size, Color color, const Point& at, Align align,
+               List& list);
+
 /// The same in letters alone, for where nothing is set: "the slope's μ = f/N".
 std::string in_letters(std::string_view words);
 

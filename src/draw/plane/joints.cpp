@@ -18,7 +18,6 @@ namespace {
 
 using sim::Vec3;
 
-constexpr double kArm = 16;   // page units: a joint farther from its body has a line to it
 constexpr double kStop = 9;   // page units: half a rail's end
 constexpr int kPieces = 24;   // of a rope that sags
 constexpr double kFar = 1e4;  // page units: a rail without an end
@@ -314,7 +313,7 @@ void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, 
 void draw_arms(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   const double weight = stage.layout.weight, width = kRod * weight;
   const Color color = stage.colours.spring;
-  for (const Arm& arm : arms(stage.cast, now, kArm * weight / view.scale)) {
+  for (const Arm& arm : arms(stage.cast, now, kArmBeyond * weight / view.scale)) {
     list.of({Subject::What::joint, arm.joint});
     list.add({{view.page(arm.from), width, color}, {view.page(arm.to), width, color}}, Cap::round);
   }

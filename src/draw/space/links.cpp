@@ -21,7 +21,6 @@ constexpr double kRise = 0.5;  // turns over which a coil leaves its axis
 constexpr int kNodes = 14;     // a turn
 constexpr double kEndOn = 7;   // amplitudes: a coil that looks shorter is narrower
 constexpr double kNarrow = 0.3;
-constexpr double kFarther = 16;  // page units: a joint farther from its body has a rod to it
 constexpr double kRail = 2.2;    // widths of a rod
 constexpr double kWithin = 0.7;  // of half a body's thickness: a joint in it
 
@@ -174,7 +173,7 @@ void add_links(SpaceFrame& s) {
     add_coil(s, s.stage.hands[i], mouse.held, mouse.pointer, number);
     add_ball(s, mouse.held, kJoint * weight * metre, color, number);
   }
-  for (const Arm& arm : arms(cast, s.now, kFarther * weight * metre)) {
+  for (const Arm& arm : arms(cast, s.now, kArmBeyond * weight * metre)) {
     const double radius = 0.5 * kRod * weight * metre;
     add_tube(s, {arm.from, arm.to}, radius, color, number++);
     s.rods.push_back({arm.from, arm.to, radius});
