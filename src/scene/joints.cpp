@@ -120,6 +120,10 @@ void refuse_keys_of_mechanisms(const Fields& fields, JointKind kind, Diagnostics
   only("over", JointKind::pulley, "pulley");
   only("joints", JointKind::gear, "gear"), only("ratio", JointKind::gear, "gear");
   only("pitch", JointKind::screw, "screw");
+  if (kind == JointKind::pulley || kind == JointKind::gear)
+    if (!fields.flag("joined"))
+      complaints.add(fields.place("joined"),
+                     fmt::format("a {} is there from the start", fields.text("type")));
 }
 
 template <int D>
@@ -148,6 +152,7 @@ class Joining {
     sim::Joint<D> it;
     it.name = name;
     it.kind = kind_;
+    it.later = !fields_.flag("joined");
     it.a = a_[i], it.b = b_[i];
     bool a_says = a_.says_where, b_says = b_.says_where;
     // against the room it is the body that moves
@@ -287,9 +292,19 @@ class Joining {
   // same joint wherever it is.
   bool turns_about_place() const { return !its_.turning || its_.angle; }
 
-  // its ends are at one place
+  // its ends are at one place. An event takes that of the first end on the second body when it joins them.
   bool meet(sim::Joint<D>& it, bool a_says, bool b_says) {
     const Vec from_a = start(world_, it.a), from_b = start(world_, it.b);
+    if (it.later && b_says && !a_says) {
+      complaints_.add(
+          fields_.place("between"),
+          "an event makes this joint where its first end is then; put that which says where first");
+      return false;
+    }
+    if (it.later && a_says && !fields_.given("at")) {
+      it.b = on<D>(world_, it.b.body, from_a);
+      return true;
+    }
     if (const Node* at = fields_.given("at")) {
       if (a_says || b_says) {
         complaints_.add(at->place, "'at' and a point in 'between' both say where; leave one out");
@@ -332,8 +347,14 @@ class Joining {
       return false;
     }
     const double apart = (start(world_, it.a) - start(world_, it.b)).norm();
-    it.length = apart;
     const Node* length = fields_.given("length");
+    if (it.later) {
+      if (length && !its_.one_sided)
+        return complaints_.add(length->place, "a rod that an event makes is as long as it is then"), false;
+      it.length = length ? length->number() : 0;
+      return true;
+    }
+    it.length = apart;
     if (!length && apart == 0) {
       complaints_.add(fields_.place("between"),
                       fmt::format("the two points of this {} are one place", fields_.text("type")));
@@ -413,7 +434,7 @@ void joints(const Node& top, const Seating<D>& roster, Constants& constants, sim
       auto it = joining.joint(n == 1 ? own : fmt::format("{}[{}]", own, i), i);
       if (!it) break;
       world.model.joints.push_back(std::move(*it));
-      world.state.broken.push_back(0);
+      world.state.broken.push_back(world.model.joints.back().later);
     }
   }
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {

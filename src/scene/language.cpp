@@ -319,6 +319,8 @@ std::vector<Key> rows() {
        .doc = "The torque above which it breaks: of all that it puts on its first end, about the place of that end (motor, spring, limits and friction too); of a gear that on the first joint's body. Of jerks as for `breaks`.", .example = "2"},
       {.path = "joint.touching", .form = boolean, .fallback = "false",
        .doc = "Whether the two bodies may touch each other.", .example = "true"},
+      {.path = "joint.joined", .form = boolean, .fallback = "true",
+       .doc = "Whether it is there from the start, or an event makes it by `join`, which holds the ends as they stand then.", .example = "false"},
 
       {.path = "chain", .form = tables,
        .doc = "An articulated body: its joints hold exactly, because the state consists of joint coordinates."},
@@ -427,6 +429,9 @@ std::vector<Key> rows() {
       {.path = "when.do.mark", .form = name, .absent = "another action",
        .doc = "Gives the instant a name, for `--measure ball.position.x@hit`, `figure.mark` and the times of a film; the second time is `hit[2]`.", .example = "\"hit\""},
       {.path = "when.do.release", .form = text, .absent = "another action", .doc = "Lets go a body that is `fixed` or has a `motion`, with its velocity; or takes a joint away.", .example = "\"gate\""},
+      {.path = "when.do.join", .form = bodies, .absent = "another action",
+       .doc = "Makes a joint that is not `joined` yet, by its name; or holds together two as they stand: bodies, or a body and a wall or `\"room\"`.", .example = "[\"bullet\", \"block\"]"},
+      {.path = "when.do.stick", .form = boolean, .absent = "another action", .doc = "Those that have come to touch are held together as they stand; with `again` each two that do.", .example = "true"},
       {.path = "when.do.set", .form = text, .absent = "another action",
        .doc = "Sets a key from now on, as `--set` writes it: of a motor (`flipper.motor.speed`), a force (`wind.components`, `room.wind`), `room.gravity`, or `fixed` of a body.", .example = "\"piston.motor.speed\""},
       {.path = "when.do.to", .form = any, .absent = "it sets nothing", .doc = "The value that it sets.", .example = "0"},

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 #include "scene/path.h"
 #include "sim/model/body_motion.h"
@@ -15,6 +16,7 @@ namespace obscura::scene {
 
 namespace {
 
+constexpr std::size_t kMostSticking = 20'000;  // pairs
 constexpr const char* kWalls[] = {"floor", "left", "right", "ceiling", "back", "front"};
 constexpr std::string_view kTaken[] = {"end", "max", "min", "mean", "argmax", "argmin"};  // of --measure
 
@@ -136,6 +138,7 @@ class WhenBuilder {
       actions(fields, when);
       if (complaints_.count() == wrong) model_.whens.push_back(std::move(when));
     }
+    refuse_never_made();
     for (const When& when : model_.whens)
       for (const Action& action : when.actions)
         model_.changed = model_.changed || !(action.what == Do::mark || action.what == Do::stop);
@@ -147,6 +150,23 @@ class WhenBuilder {
   using Action = typename When::Action;
   using Do = typename Action::Do;
   using Change = sim::Change<D>;
+
+  // joints that are not there at the start, and which no event makes
+  void refuse_never_made() {
+    const Node* all = top_.find("joint");
+    for (std::size_t k = 0; all && k < all->list().size(); ++k) {
+      const Node &its = all->list()[k], *name = its.find("name");
+      const std::vector<int> those = joints(name ? name->text() : fmt::format("joint[{}]", k));
+      const bool made = std::all_of(those.begin(), those.end(), [&](int joint) {
+        return !model_.joints[std::size_t(joint)].later ||
+               std::any_of(model_.changes.begin(), model_.changes.end(),
+                           [&](const Change& it) { return it.of == Change::Of::join && it.index == joint; });
+      });
+      if (made) continue;
+      complaints_.add(its.find("joined")->place,
+                      "no event makes this joint: [[when]] do = [{ join = \"...\" }]");
+    }
+  }
 
   void condition(const Fields& fields, When& when) {
     const Node* one = nullptr;
@@ -439,12 +459,15 @@ class WhenBuilder {
     }
     for (const Node& node : all->list()) {
       const Node *release = node.find("release"), *mark = node.find("mark"), *set = node.find("set"),
-                 *to = node.find("to"), *stop = node.find("stop");
-      const int given = (release != nullptr) + (mark != nullptr) + (set != nullptr) + (stop != nullptr);
+                 *to = node.find("to"), *stop = node.find("stop"), *join = node.find("join"),
+                 *stick = node.find("stick");
+      const int given = (release != nullptr) + (mark != nullptr) + (set != nullptr) + (stop != nullptr) +
+                        (join != nullptr) + (stick != nullptr);
       if (given != 1) {
-        complaints_.add(node.place,
-                        fmt::format("an action does one thing, release, mark, set or stop; this has {}",
-                                    given == 0 ? "none" : "several"));
+        complaints_.add(
+            node.place,
+            fmt::format("an action does one thing, mark, release, join, stick, set or stop; this has {}",
+                        given == 0 ? "none" : "several"));
         continue;
       }
       if (to && !set) {
@@ -454,6 +477,8 @@ class WhenBuilder {
       if (mark) note(*mark, when);
       if (stop) halt(*stop, when);
       if (release) let_go(*release, release->text(), when);
+      if (join) this->join(*join, when);
+      if (stick) this->stick(*stick, when);
       if (set) this->set(*set, to, when);
     }
   }
@@ -511,6 +536,121 @@ class WhenBuilder {
       if (drive >= 0) action.of.push_back(drive);
     }
     if (!action.of.empty()) when.actions.push_back(std::move(action));
+  }
+
+  // makes joints of a name, or holds together two sides, one each or each with the one
+  void join(const Node& node, When& when) {
+    if (no_joining(node.place)) return;
+    if (node.is_text()) {
+      Action action{Do::change, "", {}};
+      const std::vector<int> those = joints(node.text());
+      if (those.empty()) complaints_.add(node.place, unknown_joint(node.text()));
+      for (const int joint : those) {
+        if (!model_.joints[std::size_t(joint)].later) {
+          complaints_.add(
+              node.place,
+              fmt::format("{} holds from the start; an event makes it where it has joined = false",
+                          scene::quoted(node.text())));
+          return;
+        }
+        action.of.push_back(joining(joint));
+      }
+      when.actions.push_back(std::move(action));
+      return;
+    }
+    if (node.list().size() != 2) {
+      complaints_.add(node.place, "'join' holds two together: expected two names, or that of a joint");
+      return;
+    }
+    const std::vector<int> a = held_side(node.list()[0]), b = held_side(node.list()[1]);
+    if (a.empty() || b.empty()) return;
+    if (a.size() != b.size() && a.size() != 1 && b.size() != 1) {
+      complaints_.add(node.place, fmt::format("'join': {} are {} and {} are {}: expected as many, or one",
+                                              scene::quoted(node.list()[0].text()), a.size(),
+                                              scene::quoted(node.list()[1].text()), b.size()));
+      return;
+    }
+    Action action{Do::change, "", {}};
+    for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
+      const int one = a[a.size() == 1 ? 0 : i], other = b[b.size() == 1 ? 0 : i];
+      if (one == other || !(moves(one) || moves(other))) {
+        complaints_.add(node.place,
+                        one == other ? fmt::format("'join': both are {}", scene::quoted(named(one)))
+                                     : fmt::format("'join': neither {} nor {} moves",
+                                                   scene::quoted(named(one)), scene::quoted(named(other))));
+        return;
+      }
+      action.of.push_back(joining(glued(one, other)));
+    }
+    when.actions.push_back(std::move(action));
+  }
+
+  // holds together the pair that has come to touch
+  void stick(const Node& node, When& when) {
+    if (!std::get<bool>(node.value)) {
+      complaints_.add(node.place, "'stick' is true, or left out");
+      return;
+    }
+    if (when.on != When::On::touches) {
+      complaints_.add(node.place, "'stick' holds together what 'touches'; 'join' names two, or a joint");
+      return;
+    }
+    if (no_joining(node.place)) return;
+    if (when.pairs.size() > kMostSticking) {
+      complaints_.add(node.place, fmt::format("{} pairs may come to touch; at most {} may stick",
+                                              when.pairs.size(), kMostSticking));
+      return;
+    }
+    Action action{Do::change, "", {}, true};
+    for (const auto& [a, b] : when.pairs)
+      action.of.push_back(moves(a) || moves(b) ? joining(glued(a, b)) : -1);
+    when.actions.push_back(std::move(action));
+  }
+
+  bool no_joining(Place place) {
+    if (bonded(place)) return true;
+    if (model_.collision != sim::Collision::handout) return false;
+    complaints_.add(place,
+                    "collision = \"handout\" knows no joints; write collision = \"contact\" or \"event\"");
+    return true;
+  }
+
+  // of a joint: bodies, walls as they are in side(), or the room
+  std::vector<int> held_side(const Node& node) {
+    if (node.text() == "room" && !is_body(roster_, "room")) return {-1};
+    return side(node);
+  }
+
+  bool moves(int body) const {
+    return body >= 0 && (!model_.bodies[std::size_t(body)].fixed || drive_of(model_, body) >= 0);
+  }
+  std::string named(int body) const { return body < 0 ? "the room" : model_.bodies[std::size_t(body)].name; }
+
+  // A joint that an event makes of two, so that nothing moves between them: a weld; of particles, which have
+  // no turn, one of less. One for each two.
+  int glued(int a, int b) {
+    if (a < 0) std::swap(a, b);
+    b = std::max(b, -1);
+    const auto turns = [&](int body) { return body < 0 || model_.bodies[std::size_t(body)].turns(); };
+    if (b >= 0 && turns(a) && !turns(b)) std::swap(a, b);
+    const auto known = glued_.emplace(std::pair(a, b), int(model_.joints.size()));
+    if (!known.second) return known.first->second;
+    sim::Joint<D> it;
+    it.name = fmt::format("{}+{}", named(a), b < 0 ? "room" : named(b));
+    it.kind = turns(a) && turns(b) ? sim::JointKind::weld
+              : turns(b)           ? sim::JointKind::pin
+                                   : sim::JointKind::rod;
+    it.a.body = a, it.b.body = b, it.later = true;
+    model_.joints.push_back(std::move(it));
+    world_.state.broken.push_back(1);
+    return int(model_.joints.size()) - 1;
+  }
+
+  // the number of the change that makes a joint
+  int joining(int joint) {
+    Change change;
+    change.of = Change::Of::join, change.index = joint;
+    return number(std::move(change));
   }
 
   void set(const Node& node, const Node* to, When& when) {
@@ -658,6 +798,7 @@ class WhenBuilder {
   sim::World<D>& world_;
   sim::Model<D>& model_;
   Diagnostics& complaints_;
+  std::map<std::pair<int, int>, int> glued_;  // joints of two bodies
 };
 
 }  // namespace

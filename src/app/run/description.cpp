@@ -106,6 +106,13 @@ class Account {
                : fmt::format("joint {} {}", name, parted_.contains(joint) ? "is let go" : "breaks");
   }
 
+  // of two that an event holds together
+  std::string joining(int joint) const {
+    const sim::SceneInfo::Joint& it = cast_.joints[std::size_t(joint)];
+    const auto side = [&](int body) { return body < 0 ? std::string("the room") : called(cast_, body); };
+    return fmt::format("{} and {} are joined", side(it.a), side(it.b));
+  }
+
   const scene::Scene& scene_;
   const sim::SceneInfo& cast_;
   double soft_ = 0;
@@ -118,7 +125,7 @@ class Account {
   std::vector<Impact> impacts_;
   std::vector<Extremes> bodies_;
   std::vector<std::optional<double>> rest_;                         // since when
-  std::vector<std::pair<double, int>> broken_;                      // joints
+  std::vector<std::pair<double, int>> broken_, made_;               // joints
   std::set<int> parted_;                                            // of them those that conditions let go
   std::vector<std::pair<std::string, std::vector<double>>> marks_;  // by their names, in the order of time
   std::set<Pair> touching_;
@@ -177,7 +184,8 @@ void Account::read(const sim::Snapshot& now) {
       rest_[i] = now.time;
   }
   for (std::size_t i = 0; last_ && i < now.joints.size(); ++i)
-    if (now.joints[i].broken && !last_->joints[i].broken) broken_.emplace_back(now.time, int(i));
+    if (now.joints[i].broken != last_->joints[i].broken)
+      (now.joints[i].broken ? broken_ : made_).emplace_back(now.time, int(i));
   if (!first_) first_ = now;
   last_ = now;
   const sim::Energies& e = now.energies;
@@ -274,6 +282,12 @@ std::vector<std::string> Account::events() const {
   if (broken_.size() > kToldSingly)
     told.emplace_back(1e300, fmt::format("{} joints {}.", broken_.size(),
                                          parted_.size() >= broken_.size() ? "are let go" : "break"));
+  for (std::size_t i = 0; i < made_.size() && i < kToldSingly; ++i)
+    told.emplace_back(made_[i].first,
+                      fmt::format("At {} {}.", when(made_[i].first), joining(made_[i].second)));
+  if (made_.size() > kToldSingly)
+    told.emplace_back(made_.back().first,
+                      fmt::format("By {} {} pairs hold together.", when(made_.back().first), made_.size()));
   for (const auto& [name, times] : marks_)
     told.emplace_back(
         times.front(),
@@ -376,6 +390,7 @@ std::vector<Happening> Account::happenings() const {
     all.push_back({each->seen, fmt::format("{} hits {}, closing at {} m/s", called(cast_, each->body),
                                            other(*each), numeral(each->speed))});
   for (const auto& [at, joint] : broken_) all.push_back({at, parting(joint)});
+  for (const auto& [at, joint] : made_) all.push_back({at, joining(joint)});
   return all;
 }
 

@@ -29,7 +29,7 @@ MayTouch<D>::MayTouch(const Model<D>& model) : jointed_(model.bodies.size()) {
   }
 
   for (const Joint<D>& joint : model.joints) {
-    if (joint.touching || joint.kind == JointKind::pulley) continue;
+    if (joint.touching || joint.later || joint.kind == JointKind::pulley) continue;
     const auto hold = [&](int a, int b) {
       if (a < 0 || b < 0 || a == b) return;
       held_.push_back(std::minmax(a, b));

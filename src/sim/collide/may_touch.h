@@ -8,7 +8,8 @@
 namespace obscura::sim {
 
 /// Collision filter. Two bodies do not touch if both are fixed, both are points, one follows the handout's
-/// law, their groups ignore each other, or a joint between them, broken or not, forbids it.
+/// law, their groups ignore each other, or a joint between them, broken or not, forbids it, unless an
+/// event is yet to make it.
 template <int D>
 class MayTouch {
  public:

@@ -101,6 +101,11 @@ std::vector<std::uint64_t> words(const State<D>& state) {
     const std::int64_t a = rounds(state.wound[i].a), b = rounds(state.wound[i].b);
     if (a != 0 || b != 0) w.integer(std::int64_t(i)), w.integer(a), w.integer(b);
   }
+  for (const Made<D>& it : state.made) {
+    w.template numbers<D>(it.place);
+    w.template numbers<kAngular<D>>(it.turn);
+    w.number(it.length);
+  }
   for (const char intact : state.intact) w.integer(intact);
   for (const PartPose<D>& pose : state.part_poses) {
     w.template numbers<D>(pose.x);

@@ -161,6 +161,7 @@ struct Joint {
   double breaks = 1e300;  // N: a larger force on the joint breaks it
   double breaks_torque = 1e300;  // N m: so does a larger torque, about the place of a
   bool touching = false;         // whether the two bodies may touch each other
+  bool later = false;            // an event makes it: until then it holds nothing
   bool linked = false;           // a chain holds it: of its own it has limits, a motor and friction
 
   // a pulley: the points that its rope slides over, from a to b. A gear: the ends of its second joint
@@ -339,9 +340,10 @@ struct Articulation {
 /// A change of the room that an event makes, for the rest of the run.
 template <int D>
 struct Change {
-  enum class Of { hold, motor, gravity, force };
+  enum class Of { hold, motor, gravity, force, join };
   Of of = Of::hold;
-  int index = -1;  // of the body that is held where it is, the joint, or the force
+  // of the body that is held where it is, the joint that gets a motor or is made, or the force
+  int index = -1;
   typename Joint<D>::Motor motor;
   Vec<D> gravity = Vec<D>::Zero();
   std::shared_ptr<const Force<D>> force;
@@ -385,7 +387,8 @@ struct When {
     enum class Do { mark, let_go, part, change, stop };
     Do what = Do::mark;
     std::string mark;
-    std::vector<int> of;  // drives that are let go, joints that are parted, or changes of the model
+    std::vector<int> of;   // drives that are let go, joints that are parted, or changes of the model
+    bool of_pair = false;  // only that of the pair that came to touch, in the order of `pairs`
   };
 
   std::string name;

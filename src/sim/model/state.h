@@ -115,6 +115,16 @@ struct Wound {
   bool operator==(const Wound&) const = default;
 };
 
+/// How the ends of a joint stood when an event made it, which is how it holds them.
+template <int D>
+struct Made {
+  Vec<D> place = Vec<D>::Zero();               // of its end on b, as End::local; zero if its ends are apart
+  AngularVec<D> turn = AngularVec<D>::Zero();  // as Joint::turn
+  double length = 0;                           // as Joint::length
+
+  bool operator==(const Made&) const = default;
+};
+
 /// All that changes while the room runs, as a plain value: it copies, compares, and hashes. Time is
 /// step / rate, plus `beyond` in the copy that a frame between two steps shows.
 template <int D>
@@ -138,6 +148,7 @@ struct State {
   EventLog events;             // of a model with conditions
   std::vector<int> on_piece;   // of a model with wires one a joint: the piece of the wire that its a is on
   std::vector<Wound> wound;    // of a model with ropes on wheels one a joint
+  std::vector<Made<D>> made;   // of a model whose events make joints one a joint
 
   // bonded bodies (sim/step/bonded_bodies.h): then all above describes the parts, and `bonded` is stepped
   std::vector<char> intact;             // one a bond: whether it is whole

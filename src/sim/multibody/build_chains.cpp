@@ -127,7 +127,8 @@ class Growing {
   }
 
   bool holds(int joint) const {
-    return freedom<D>(world_.model.joints[joint].kind) && !world_.model.joints[joint].linked;
+    const Joint<D>& it = world_.model.joints[joint];
+    return freedom<D>(it.kind) && !it.linked && !it.later;
   }
 
   Rotation<D> turned(int body) const {

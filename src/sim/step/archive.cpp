@@ -46,6 +46,10 @@ template <class Visit>
 void fields(Visit& visit, Wound& it) {
   visit(it.a), visit(it.b);
 }
+template <class Visit, int D>
+void fields(Visit& visit, Made<D>& it) {
+  visit(it.place), visit(it.turn), visit(it.length);
+}
 template <class Visit>
 void fields(Visit& visit, EventLog& it) {
   visit(it.on), visit(it.done), visit(it.happenings), visit(it.changes), visit(it.stopped);
@@ -64,7 +68,7 @@ void fields(Visit& visit, State<D>& it) {
   visit(it.intact), visit(it.part_poses), visit(it.bonded), visit(it.contacts), visit(it.frozen),
       visit(it.quiet);
   visit(it.broken), visit(it.joint_forces), visit(it.joint_torques), visit(it.work), visit(it.released);
-  visit(it.events), visit(it.on_piece), visit(it.wound);
+  visit(it.events), visit(it.on_piece), visit(it.wound), visit(it.made);
 }
 
 template <class T>
@@ -204,6 +208,9 @@ bool fits(const State<D>& state, const Model<D>& model) {
     const auto& curve = model.joints[i].curve;
     good = state.on_piece[i] >= 0 && state.on_piece[i] <= (curve ? curve->size() : 0);
   }
+  good = good && sized(state.made, joints);
+  for (const Made<D>& it : state.made)
+    good = good && it.place.allFinite() && it.turn.allFinite() && std::isfinite(it.length);
   for (const Wound& it : state.wound) good = good && std::isfinite(it.a) && std::isfinite(it.b);
   for (const Contact<D>& contact : state.contacts) {
     good = good && body(contact.key.a) && (body(contact.key.b) || wall(-1 - contact.key.b)) &&

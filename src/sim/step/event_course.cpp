@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kSmooth = 0.2;      // of its speeds: how far they differ in a smooth step
 constexpr double kLettingGo = 1e-5;  // of a step
+constexpr double kTouchTime = 1e-7;  // likewise
 
 }  // namespace
 
@@ -136,6 +137,38 @@ void Events<D>::find_touches(const State<D>& state, int w, double from, double t
     }
     if (touched && to - ended > kSameInstant) left(ended);
   }
+}
+
+// whether two are joined when they come to touch
+template <int D>
+bool Events<D>::joins(const When<D>& when) const {
+  if (when.on != On::touches) return false;
+  for (const Action& action : when.actions)
+    for (const int of : action.of)
+      if (action.what == Action::Do::change && of >= 0 &&
+          model_.changes[std::size_t(of)].of == Change<D>::Of::join)
+        return true;
+  return false;
+}
+
+// The instant at which two that will be joined come to touch, where it is known to the step alone: they are
+// not to bounce for the rest of it.
+template <int D>
+void Events<D>::search_touch(Found& found, double from, double to) {
+  const std::pair<int, int> pair = model_.whens[std::size_t(found.when)].pairs[std::size_t(found.which)];
+  const Course<D> known = course_;
+  double low = from, high = to;
+  while (high - low > kTouchTime) {
+    const double middle = 0.5 * (low + high);
+    course_.clear();
+    tried_ = begun_;
+    if (stepper_->go(tried_, from, middle)) break;
+    sort_meetings();
+    spans(tried_, pair, false, from, middle);
+    (spans_.empty() ? low : high) = middle;
+  }
+  found.at = high;
+  course_ = known;
 }
 
 // how a body stands at a fraction of the step within the course at hand, on the piece that has `inside`

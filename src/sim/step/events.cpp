@@ -72,8 +72,14 @@ template <int D>
 void Events<D>::make(const State<D>& state) {
   std::vector<char> released = state.released;
   released.resize(model_.drives.size());
-  if (stepper_ && made_released_ == released && made_changes_ == state.events.changes) return;
-  made_released_ = std::move(released), made_changes_ = state.events.changes;
+  std::vector<int> changes = state.events.changes;
+  std::erase_if(changes, [&](int number) {
+    const Change<D>& it = model_.changes[std::size_t(number)];
+    return it.of == Change<D>::Of::join && state.broken[std::size_t(it.index)];
+  });
+  if (stepper_ && made_released_ == released && made_changes_ == changes && made_joints_ == state.made)
+    return;
+  made_released_ = std::move(released), made_changes_ = std::move(changes), made_joints_ = state.made;
   stepper_.reset();
   now_ = model_;
   now_.whens.clear();
@@ -106,6 +112,9 @@ void Events<D>::make(const State<D>& state) {
       case Change<D>::Of::force:
         now_.forces[std::size_t(change.index)] = *change.force;
         break;
+      case Change<D>::Of::join:
+        join_as(now_.joints[std::size_t(change.index)], state.made[std::size_t(change.index)]);
+        break;
     }
   }
   probes_ =
@@ -123,6 +132,9 @@ const Model<D>& Events<D>::model(const State<D>& state) {
 
 template <int D>
 bool Events<D>::fits(const State<D>& state) {
+  if (has_later_joints(model_) &&
+      (state.made.size() != model_.joints.size() || state.broken.size() != model_.joints.size()))
+    return false;
   make(state);
   State<D> plain = state;
   plain.events = {};
@@ -139,6 +151,7 @@ template <int D>
 void Events<D>::begin(State<D>& state) {
   state.events = {};
   state.released.assign(model_.drives.size(), 0);
+  if (has_later_joints(model_)) state.made.resize(model_.joints.size());
   make(state);
   stepper_->begin(state);
   int all = 0;
@@ -166,12 +179,12 @@ void Events<D>::begin(State<D>& state) {
     }
   }
   // times that are the start
-  std::vector<const Action*> actions;
+  std::vector<Due> actions;
   for (int w = 0; w < int(model_.whens.size()); ++w) {
     if (model_.whens[std::size_t(w)].on != On::time || !(times_[std::size_t(w)] == TimeStamp{state.step, 0}))
       continue;
     act(state, {0, w, 0, true, 0}, {state.step, 0});
-    for (const Action& action : model_.whens[std::size_t(w)].actions) actions.push_back(&action);
+    for (const Action& action : model_.whens[std::size_t(w)].actions) actions.push_back({&action, 0});
   }
   change(state, actions, {state.step, 0});
 }
@@ -230,8 +243,12 @@ std::optional<Trouble> Events<D>::advance(State<D>& state, double to) {
     if (exact_ || end == 1 || end < to) find(state, from, end);
     find_times(begun_, from, end);
     std::erase_if(found_, [&](Found& each) { return !confirm(state, each, from, end); });
-    if (exact_)
-      for (Found& each : found_) search(each, from, end);
+    for (Found& each : found_) {
+      if (exact_)
+        search(each, from, end);
+      else if (joins(model_.whens[std::size_t(each.when)]))
+        search_touch(each, from, end);
+    }
     std::sort(found_.begin(), found_.end(), [](const Found& a, const Found& b) { return a.at < b.at; });
 
     bool cut = false;
@@ -244,12 +261,12 @@ std::optional<Trouble> Events<D>::advance(State<D>& state, double to) {
                   return a.when != b.when ? a.when < b.when : a.which < b.which;
                 });
       const TimeStamp stamp = at < 1 ? TimeStamp{begun_.step, at} : TimeStamp{begun_.step + 1, 0};
-      std::vector<const Action*> actions;
+      std::vector<Due> actions;
       for (std::size_t k = i; k < j; ++k) {
         if (!act(state, found_[k], stamp)) continue;
         const When<D>& when = model_.whens[std::size_t(found_[k].when)];
         if (when.only_marks()) continue;
-        for (const Action& action : when.actions) actions.push_back(&action);
+        for (const Action& action : when.actions) actions.push_back({&action, found_[k].which});
       }
       if (actions.empty()) continue;
       cut = true;
@@ -313,9 +330,9 @@ bool Events<D>::act(State<D>& state, const Found& found, TimeStamp at) {
 
 // does what is asked for at one instant. What the room's hand gives by it of energy is work.
 template <int D>
-void Events<D>::change(State<D>& state, const std::vector<const Action*>& actions, TimeStamp at) {
+void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeStamp at) {
   bool any = false;
-  for (const Action* action : actions) {
+  for (const auto& [action, which] : actions) {
     if (action->what == Action::Do::stop) state.events.stopped = 1;
     any = any || (action->what != Action::Do::stop && action->what != Action::Do::mark);
   }
@@ -323,8 +340,11 @@ void Events<D>::change(State<D>& state, const std::vector<const Action*>& action
   const double t = time(at, model_.rate);
   const double before = energies(stepper_->model(state), state, stepper_->paths(), t).total();
   std::vector<int>& changes = state.events.changes;
-  for (const Action* action : actions) {
-    for (const int of : action->of) {
+  for (const auto& [action, which] : actions) {
+    for (std::size_t i = 0; i < action->of.size(); ++i) {
+      if (action->of_pair && int(i) != which) continue;
+      const int of = action->of[i];
+      if (of < 0) continue;
       switch (action->what) {
         case Action::Do::let_go: {
           const int body = model_.drives[std::size_t(of)].body;
@@ -337,11 +357,21 @@ void Events<D>::change(State<D>& state, const std::vector<const Action*>& action
         }
         case Action::Do::part:
           if (std::size_t(of) < state.broken.size()) state.broken[std::size_t(of)] = 1;
+          std::erase_if(changes, [&](int c) {
+            const Change<D>& it = model_.changes[std::size_t(c)];
+            return it.of == Change<D>::Of::join && it.index == of;
+          });
           break;
         case Action::Do::change: {
           const Change<D>& made = model_.changes[std::size_t(of)];
+          const bool joins = made.of == Change<D>::Of::join;
+          if (joins && !state.broken[std::size_t(made.index)]) break;
           std::erase_if(changes, [&](int c) { return model_.changes[std::size_t(c)].replaces(made); });
           changes.push_back(of);
+          if (joins) {
+            const auto joint = std::size_t(made.index);
+            state.made[joint] = as_it_stands(model_.joints[joint], state), state.broken[joint] = 0;
+          }
           if (made.of != Change<D>::Of::hold) break;
           state.v[std::size_t(made.index)].setZero();
           if (const int k = turning(state, made.index); k >= 0) state.spin[std::size_t(k)].setZero();

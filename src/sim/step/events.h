@@ -102,9 +102,16 @@ class Events {
   std::optional<double> true_instant(const Found& found, double from, double to);
   std::optional<double> false_before(const Found& found, double from, double at);
   void search(Found& found, double from, double to);
+  bool joins(const When<D>& when) const;
+  void search_touch(Found& found, double from, double to);
 
   bool act(State<D>& state, const Found& found, TimeStamp at);
-  void change(State<D>& state, const std::vector<const Action*>& actions, TimeStamp at);
+  // an action, and for which of its condition's things
+  struct Due {
+    const Action* action;
+    int which;
+  };
+  void change(State<D>& state, const std::vector<Due>& actions, TimeStamp at);
   void note_truths(State<D>& state, double from, double to);
 
   const Model<D>& model_;
@@ -118,6 +125,7 @@ class Events {
   Model<D> now_;
   std::vector<char> made_released_;
   std::vector<int> made_changes_;
+  std::vector<Made<D>> made_joints_;  // State::made of now_, of those that are not broken
   std::unique_ptr<Stepper<D>> stepper_;
 
   Course<D> course_;

@@ -104,6 +104,43 @@ std::optional<int> follow_ropes(const Model<D>& model, State<D>& state) {
   return ended;
 }
 
+namespace {
+
+AngularVec<2> between(const Orientation<2>& a, const Orientation<2>& b) { return a - b; }
+AngularVec<3> between(const Orientation<3>& a, const Orientation<3>& b) {
+  return logarithm(composed<3>(inverse<3>(b), a));
+}
+
+}  // namespace
+
+template <int D>
+Made<D> as_it_stands(const Joint<D>& joint, const State<D>& state) {
+  const auto motion = [&](int body) { return body < 0 ? BodyMotion<D>() : body_motion(state, body); };
+  const auto turn = [&](int body) {
+    const int k = body < 0 ? -1 : turning(state, body);
+    return k < 0 ? no_rotation<D>() : state.turn[std::size_t(k)];
+  };
+  const BodyMotion<D> a = motion(joint.a.body), b = motion(joint.b.body);
+  const Vec<D> at = a.x + a.arm(joint.a.local);
+  Made<D> so;
+  so.turn = between(turn(joint.a.body), turn(joint.b.body));
+  if (equations<D>(joint.kind).apart)
+    so.length = std::sqrt((at - b.x - b.arm(joint.b.local)).squaredNorm());
+  else
+    so.place = b.room_from_body.transpose() * (at - b.x);
+  return so;
+}
+
+template <int D>
+void join_as(Joint<D>& joint, const Made<D>& so) {
+  joint.later = false;
+  joint.turn = so.turn;
+  if (equations<D>(joint.kind).apart)
+    joint.length = joint.length > 0 ? std::max(joint.length, so.length) : so.length;
+  else
+    joint.b.local = so.place;
+}
+
 template const JointEquations<2>& equations<2>(JointKind);
 template int rows<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const JointTurn<2>&,
                      Row<2>*, double*, std::span<const BodyMotion<2>>);
@@ -122,5 +159,10 @@ template Wrench<3> load_on_a<3>(const Joint<3>&, const Row<3>&, const BodyMotion
 template Wrench<3> coil_load<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&,
                                 const JointTurn<3>&);
 template std::optional<int> follow_ropes<3>(const Model<3>&, State<3>&);
+
+template Made<2> as_it_stands<2>(const Joint<2>&, const State<2>&);
+template Made<3> as_it_stands<3>(const Joint<3>&, const State<3>&);
+template void join_as<2>(Joint<2>&, const Made<2>&);
+template void join_as<3>(Joint<3>&, const Made<3>&);
 
 }  // namespace obscura::sim

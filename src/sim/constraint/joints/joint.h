@@ -131,6 +131,22 @@ void break_dependents(const Model<D>& model, std::vector<char>& broken) {
   }
 }
 
+/// How the ends of a joint stand: an end on b where the one on a is, unless a length is between them, and
+/// the turn of a against b.
+template <int D>
+Made<D> as_it_stands(const Joint<D>& joint, const State<D>& state);
+
+/// The joint that an event has made so: from now on it holds.
+template <int D>
+void join_as(Joint<D>& joint, const Made<D>& so);
+
+/// Whether a model has joints that events make.
+template <int D>
+bool has_later_joints(const Model<D>& model) {
+  return std::any_of(model.joints.begin(), model.joints.end(),
+                     [](const Joint<D>& joint) { return joint.later; });
+}
+
 /// Whether a joint holds C >= 0 only: a rope, with what it has left.
 template <int D>
 bool one_sided(const Joint<D>& joint) {

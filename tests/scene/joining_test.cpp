@@ -1,0 +1,174 @@
+// Bodies that an event joins: momentum and angular momentum are those before, and nothing moves between them
+// from then on, in every manner, in the plane and in space.
+
+#include "scene/text_run.h"
+
+namespace obscura::scene {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+std::string disc(const std::string& name, double mass, double radius, const std::string& more) {
+  return fmt::format("[[ball]]\nname = \"{}\"\nmass = {}\nradius = {}\n{}\n", name, mass, radius, more);
+}
+
+const std::string kStick =
+    "[[when]]\ntouches = [\"a\", \"b\"]\ndo = [{ stick = true }, { mark = \"hit\" }]\n";
+
+// One that comes from the left meets one at rest off its middle: both move by the momentum, and turn by the
+// angular momentum about their common centre, w = J / (I_a + I_b + m d^2), m the reduced mass. By steps it
+// is the place in which they are when they stick that counts.
+TEST(Joining, WhatSticksKeepsMomentumAndAngularMomentum) {
+  for (const Manner& manner : kManners) {
+    for (const double e : {0.0, 0.7}) {
+      for (const int dimension : {2, 3}) {
+        const std::string surface = fmt::format("elasticity = {}\nfriction = 0.3", e);
+        const std::string third = dimension == 3 ? ", 0" : "";
+        const std::string text =
+            (dimension == 2 ? plane_without_walls(manner, "gravity = [0, 0]\n" + surface)
+                            : space_without_walls(manner, "gravity = [0, 0, 0]\n" + surface)) +
+            "rate = 600\n" +
+            disc("a", 1, 0.3, "position = [-2, 0.25" + third + "]\nvelocity = [3, 0" + third + "]") +
+            disc("b", 2, 0.3, "position = [0, 0" + third + "]") + kStick;
+        const TextRun run(text);
+        const std::size_t a = number_of(run, "a"), b = number_of(run, "b");
+        const double part = dimension == 2 ? 0.5 : 0.4, inertia = part * 3 * 0.09;
+        for (const double t : {1.0, 2.0, 5.0}) {
+          const sim::Snapshot now = run.at(t);
+          const sim::Snapshot::Body &one = now.bodies[a], &two = now.bodies[b];
+          const std::string where = fmt::format("{} e = {} D = {} t = {}", manner.name, e, dimension, t);
+          const sim::Vec3 momentum = one.velocity + 2 * two.velocity;
+          EXPECT_NEAR(momentum.x(), 3, 1e-12) << where;
+          EXPECT_NEAR(momentum.y(), 0, 1e-12) << where;
+          const sim::Vec3 d = one.position - two.position;
+          const double reduced = 2.0 / 3, w = -reduced * 0.25 * 3 / (inertia + reduced * d.squaredNorm());
+          EXPECT_NEAR(one.spin.z(), w, manner.name == "iterative" ? 1e-6 : 1e-9) << where;
+          EXPECT_NEAR(two.spin.z(), one.spin.z(), 1e-9) << where;
+          const sim::Vec3 u = one.velocity - two.velocity - one.spin.cross(d);
+          EXPECT_NEAR(u.norm(), 0, 1e-8) << where;
+          EXPECT_NEAR(d.norm(), 0.6, manner.name == "iterative" ? 1e-5 : 1e-7) << where;
+        }
+      }
+    }
+  }
+}
+
+// A bullet in a hanging block, without gravity until then: w = m v L / I about the hinge; and it rises until
+// that energy is spent.
+TEST(Joining, ABallisticPendulumRisesByWhatIsLeft) {
+  for (const Manner& manner : kManners) {
+    const std::string text =
+        plane_without_walls(manner, "gravity = [0, 0]") + "rate = 2000\n" +
+        "[[box]]\nname = \"b\"\nsize = [0.2, 2]\nposition = [0, 0]\nmass = 4\n"
+        "[[joint]]\ntype = \"pin\"\nbetween = [{ body = \"b\", at = \"top\" }, \"room\"]\n" +
+        disc("a", 0.1, 0.05, "position = [-0.5, -0.8]\nvelocity = [40, 0]") +
+        "[[when]]\ntouches = [\"a\", \"b\"]\ndo = [{ stick = true }, { set = \"room.gravity\", to = [0, -10] "
+        "}]\n";
+    const TextRun run(text);
+    const std::size_t a = number_of(run, "a"), b = number_of(run, "b");
+    const sim::Vec3 hinge(0, 1, 0);
+    for (const double t : {0.1, 0.3, 0.6, 2.0}) {
+      const sim::Snapshot now = run.at(t);
+      const sim::Vec3 arm = now.bodies[a].position - hinge;
+      const double whole = 4 * (4 + 0.04) / 12 + 4 + 0.1 * (arm.squaredNorm() + 0.5 * 0.0025);
+      const double begun = 0.5 * std::pow(0.1 * 40 * 1.8, 2) / whole;
+      const double w = now.bodies[b].spin.z();
+      const double rise = 40 * now.bodies[b].position.y() + now.bodies[a].position.y() + 0.8;
+      EXPECT_NEAR(0.5 * whole * w * w + rise, begun, 1e-3 * begun) << manner.name << t;
+      EXPECT_NEAR(now.bodies[a].spin.z(), w, 1e-8) << manner.name << t;
+    }
+  }
+}
+
+// Particles have no turn: what sticks to a body is carried around, what sticks to a wall stays.
+TEST(Joining, ParticlesAndWallsMayBeOne) {
+  for (const Manner& manner : kManners) {
+    const TextRun run(plane_without_walls(manner, "gravity = [0, 0]") +
+                      "[[particle]]\nname = \"a\"\nposition = [-1, 0.2]\nvelocity = [2, 0]\nmass = 1\n" +
+                      disc("b", 1, 0.3, "position = [0, 0]") + kStick);
+    const sim::Snapshot now = run.at(3);
+    const std::size_t a = number_of(run, "a"), b = number_of(run, "b");
+    const sim::Vec3 d = now.bodies[a].position - now.bodies[b].position;
+    const double w = -0.5 * 2 * 0.2 / (0.5 * 0.09 + 0.5 * d.squaredNorm());
+    EXPECT_NEAR(now.bodies[b].spin.z(), w, 1e-6) << manner.name;
+    EXPECT_NEAR(d.norm(), 0.3, manner.name == "iterative" ? 1e-5 : 1e-7) << manner.name;
+
+    const TextRun stuck("duration = 9\n[room]\nsize = [4, 4]\nelasticity = 1\n" + manner.keys + "\n" +
+                        disc("a", 1, 0.3, "position = [2, 2]\nvelocity = [5, 0]\nspin = 200") +
+                        "[[when]]\ntouches = [\"a\", \"right\"]\ndo = [{ stick = true }]\n");
+    EXPECT_NEAR(stuck.at(2).bodies[0].position.x(), 3.7, manner.name == "iterative" ? 1e-5 : 1e-7)
+        << manner.name;
+    EXPECT_NEAR((stuck.place(2) - stuck.place(8)).norm(), 0, 1e-7) << manner.name;
+    EXPECT_NEAR(stuck.at(8).bodies[0].spin.z(), 0, 1e-9) << manner.name;
+  }
+}
+
+// A joint that is not there at the start: a rod, a pin with limits counted from then, a hinge in space; each
+// keeps what its kind keeps.
+TEST(Joining, AJointThatIsMadeHoldsTheEndsAsTheyStand) {
+  for (const Manner& manner : kManners) {
+    const TextRun rod(plane_without_walls(manner, "gravity = [0, 0]") +
+                      disc("a", 1, 0.1, "position = [-1, 0]\nvelocity = [0, 2]") +
+                      disc("b", 1, 0.1, "position = [1, 0]\nvelocity = [0, -2]") +
+                      "[[joint]]\nname = \"rod\"\ntype = \"rod\"\nbetween = [\"a\", \"b\"]\njoined = false\n"
+                      "[[when]]\ntime = 1\ndo = [{ join = \"rod\" }]\n"
+                      "[[when]]\ntime = 4\ndo = [{ release = \"rod\" }]\n");
+    const double length = std::sqrt(4 + 16.0);  // and across it 2 * 2 / length each
+    EXPECT_NEAR((rod.place(0.9) - rod.place(0.9, 1)).norm(), std::sqrt(4 + 3.6 * 3.6), 1e-9) << manner.name;
+    for (const double t : {1.5, 3.9})
+      EXPECT_NEAR((rod.place(t) - rod.place(t, 1)).norm(), length, 1e-6) << manner.name;
+    EXPECT_NEAR(rod.at(3).bodies[0].velocity.norm(), 2 * 2 / length, 1e-6) << manner.name;
+    EXPECT_NEAR((rod.place(6) - rod.place(6, 1)).norm(), std::hypot(length, 2 * 2 * 4 / length), 2e-2)
+        << manner.name;
+
+    const TextRun pin(
+        plane_without_walls(manner, "gravity = [0, 0]") +
+        "[[box]]\nname = \"a\"\nsize = [1, 0.2]\nposition = [-3, 0]\nvelocity = [2, 0]\nmass = 1\n"
+        "[[joint]]\nname = \"hook\"\ntype = \"pin\"\nbetween = [{ body = \"a\", local = [0, 0.4] }, "
+        "\"room\"]\njoined = false\n"
+        "[[when]]\nvalue = \"a.x > 0\"\ndo = [{ join = \"hook\" }]\n");
+    const sim::Snapshot now = pin.at(2.5);
+    // m v h = (I + m h^2) w
+    EXPECT_NEAR(now.bodies[0].spin.z(), 2 * 0.4 / ((1 + 0.04) / 12 + 0.16), 1e-6) << manner.name;
+  }
+}
+
+TEST(Joining, ARunThatGoesOnIsTheWholeRun) {
+  for (const Manner& manner : kManners) {
+    const std::string text = plane_without_walls(manner, "gravity = [0, -9]") +
+                             disc("a", 1, 0.3, "position = [-2, 0.25]\nvelocity = [3, 0]") +
+                             disc("b", 2, 0.3, "position = [0, 0]") + kStick;
+    const TextRun whole(text), again(text);
+    const std::size_t b = number_of(whole, "b");
+    const sim::Vec3 at = whole.place(2, b);
+    again.at(1);
+    EXPECT_EQ(again.place(2, b), at);
+    again.at(0.2), again.at(1.7);
+    EXPECT_EQ(again.place(2, b), at) << manner.name;
+  }
+}
+
+TEST(Joining, WhatCannotBeJoinedIsRefused) {
+  const std::string room = plane_without_walls(kManners[0]) + disc("a", 1, 0.3, "position = [-2, 0.25]") +
+                           disc("b", 1, 0.3, "position = [0, 0]\nfixed = true") +
+                           disc("c", 1, 0.3, "position = [2, 0]\nfixed = true");
+  const auto when = [&](const std::string& more, const std::string& condition = "time = 1") {
+    return refusal(room + "[[when]]\n" + condition + "\ndo = [{ " + more + " }]\n");
+  };
+  const auto expect = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  expect(when("stick = true"), "'stick' holds together what 'touches'");
+  expect(when("join = \"hook\""), "no joint or bond is called 'hook'");
+  expect(when("join = [\"b\", \"c\"]"), "neither 'b' nor 'c' moves");
+  expect(when("join = [\"a\", \"a\"]"), "both are 'a'");
+  expect(when("join = [\"a\"]"), "expected two names");
+  expect(when("join = [\"a\", \"floor\"]"), "floor");
+  const std::string rod = "[[joint]]\nname = \"r\"\ntype = \"rod\"\nbetween = [\"a\", \"b\"]\n";
+  expect(refusal(room + rod + "joined = false\n"), "no event makes this joint");
+  expect(refusal(room + rod + "[[when]]\ntime = 1\ndo = [{ join = \"r\" }]\n"), "holds from the start");
+  EXPECT_EQ(when("join = [\"a\", \"room\"]"), "");
+}
+
+}  // namespace
+}  // namespace obscura::scene
