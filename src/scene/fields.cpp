@@ -46,9 +46,9 @@ sim::Vec<D> vector(const Node& node) {
 }
 
 sim::Rational exact(const Node& node) {
-  if (node.is_text()) return *sim::parse_rational(node.text());
+  if (node.is_text()) return sim::parse_rational(node.text()).value();
   return node.is_integer() ? sim::rational(std::get<std::int64_t>(node.value))
-                           : *sim::from_double(node.number());
+                           : sim::from_double(node.number()).value();
 }
 
 double number(const Node& node, int i, int n) {

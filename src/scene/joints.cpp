@@ -173,9 +173,12 @@ class Joining {
     if (its_.turning) {
       for (const End& end : {it.a, it.b})
         if (end.body >= 0 && !world_.model.bodies[std::size_t(end.body)].turns())
-          return refuse(place,
-                        fmt::format("'{}' is a particle, which does not turn: a {} needs a [[ball]]",
-                                    world_.model.bodies[std::size_t(end.body)].name, fields_.text("type")));
+          return refuse(
+              place,
+              fmt::format(fmt::runtime(is_point(world_.model.bodies[std::size_t(end.body)].shape)
+                                           ? "'{}' is a particle, which does not turn: a {} needs a [[ball]]"
+                                           : "'{}' has rotation = false, and a {} is of bodies that turn"),
+                          world_.model.bodies[std::size_t(end.body)].name, fields_.text("type")));
     }
     const auto held = [&](int end) {
       if (end < 0) return true;

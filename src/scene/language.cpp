@@ -103,6 +103,9 @@ std::vector<Key> rows() {
        .doc = "Friction of the walls. If given, a contact with a wall uses the geometric mean of wall and body.", .example = "0.8"},
       {.path = "room.static_friction", .form = number, .absent = "`room.friction`", .range = kNotNegative,
        .doc = "The same of what does not slip.", .example = "0.9"},
+      {.path = "room.observer", .form = text, .fallback = "\"room\"",
+       .doc = "A body, as which all is seen: places, angles and velocities are told and drawn as it has them, turning with it; it stays where it is at the start. Forces are those that act. The room has no walls then.",
+       .example = "\"turntable\""},
       {.path = "room.walls", .form = walls, .absent = "those of `size`", .choices = {"ground", "none"},
        .doc = "`\"ground\"`: only the floor, without end; `\"none\"`: no walls, and `size` is what is shown. Or tables: walls at any "
               "angle, in addition to those of `size` or instead of them: at most 1000, and at most eight in one plane.",

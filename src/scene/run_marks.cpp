@@ -174,9 +174,9 @@ std::vector<std::string> declared_marks(const Node& top) {
 }
 
 MarksPut put_marks(Node& top, const RunMarks* marks, Diagnostics& complaints) {
-  if (marks && marks->stop) cut_at(top, *marks->stop);
   Putting putting(marks, declared_marks(top), complaints);
   putting.table(top, "");
+  if (marks && marks->stop) cut_at(top, *marks->stop);
 
   // the instant of a figure, to which its others are relative
   Node* figure = top.find("figure");

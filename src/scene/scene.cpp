@@ -35,6 +35,7 @@
 #include "sim/motion/stability.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/solve/exact/couples.h"
+#include "sim/step/observer.h"
 
 namespace obscura::scene {
 
@@ -223,6 +224,25 @@ std::optional<sim::Model<D>> rebuilt(const Node& top, const std::vector<CopySet>
   return {};
 }
 
+// the body that sees the room, around which that would have to turn
+template <int D>
+int observer(const Node& top, const NameTable& roster, const sim::Model<D>& model, Diagnostics& complaints) {
+  const Node* its = Fields::of(top, "room").given("observer");
+  if (!its || (its->text() == "room" && roster.index.count("room") == 0)) return -1;
+  const std::vector<int> found = roster.bodies(its->text(), its->place, complaints);
+  if (found.size() > 1)
+    complaints.add(its->place,
+                   fmt::format("{} is {} bodies; one sees the room", scene::quoted(its->text()), found.size()));
+  const auto refuse = [&](bool any, const char* what) {
+    if (any) complaints.add(its->place, fmt::format("an observer sees a room without {}", what));
+  };
+  refuse(!model.walls.empty(), "walls, which stand still; write walls = \"none\", and fixed boxes for them");
+  refuse(top.find("mouse") != nullptr, "mice");
+  refuse(top.find("explosion") != nullptr, "explosions");
+  refuse(Fields::of(top, "room").given("fluid") != nullptr, "a fluid");
+  return found.size() == 1 ? found[0] : -1;
+}
+
 // builds the world, in the plane or in space, and its looks
 template <int D>
 sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, const Dimension& told,
@@ -267,6 +287,8 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   refuse_crowd(top, model, complaints);
   check_static_friction(top, model, complaints);
   refuse_taken_names(top, roster, complaints);
+
+  scene.observer = observer(top, roster, model, complaints);
 
   // the extent that the camera fits; it sets the length of a reference pixel
   scene.extent = extent(walls, world);
@@ -327,9 +349,15 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
 }
 
 std::unique_ptr<sim::Run> Scene::run(std::span<const std::uint64_t> saved) const {
-  return std::visit(
-      [&](const auto& it) { return trajectory ? sim::playback(it, trajectory) : sim::run(it, saved); },
-      world);
+  const auto run = [&]<int D>(const sim::World<D>& it) {
+    auto found = trajectory ? sim::playback(it, trajectory) : sim::run(it, saved);
+    if (observer < 0 || !found) return found;
+    const sim::Orientation<D> turn = turn_of(it, observer);
+    const double angle = D == 2 ? turn[0] : 0;
+    return sim::seen_from(std::move(found), observer, sim::to_3d<D>(it.state.x[std::size_t(observer)]),
+                          sim::quaternion<D>(turn), angle);
+  };
+  return std::visit(run, world);
 }
 
 std::unique_ptr<sim::Run> Scene::shown_run(std::span<const std::uint64_t> saved) const {

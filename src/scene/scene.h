@@ -72,6 +72,7 @@ struct Scene {
   std::shared_ptr<const sim::Trajectory> trajectory;  // another program's run, shown instead of the scene's
   std::string trajectory_file;                        // its name
   bool show_divergence = false;                       // physics.diverge
+  int observer = -1;                                  // the body that sees it; -1: the room
   std::vector<std::string> marks;                     // of its run that film and figure name
   bool marked = false;                                // their times, and that of a stop, are in place
   std::vector<std::pair<std::string, sim::Rational>>

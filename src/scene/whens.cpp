@@ -220,6 +220,10 @@ class WhenBuilder {
         for (const int wall : *which) all.push_back(-1 - wall);
         return all;
       }
+      if (text == "ground" && walls > listed) {
+        complaints_.add(node.place, "the ground is the wall \"floor\"");
+        return {};
+      }
       for (int k = walls - listed; k < 6; ++k) {
         if (text != kWalls[k]) continue;
         complaints_.add(node.place,
@@ -509,10 +513,24 @@ class WhenBuilder {
     return true;
   }
 
+  bool is_spring(const std::string& name) const {
+    const Node* all = top_.find("spring");
+    for (std::size_t k = 0; all && k < all->list().size(); ++k) {
+      const Node* its = all->list()[k].find("name");
+      if (its && its->is_text() && its->text() == name) return true;
+    }
+    return false;
+  }
+
   void let_go(const Node& node, const std::string& text, When& when) {
     if (bonded(node.place)) return;
     if (!is_body(roster_, text)) {
       Action action{Do::part, "", joints(text)};
+      if (action.of.empty() && is_spring(text)) {
+        complaints_.add(node.place,
+                        "springs stay; a rope or a rod, or a [[force]] that is switched, lets go");
+        return;
+      }
       if (action.of.empty()) {
         std::vector<std::string_view> names;
         for (const Group& group : roster_.groups) names.push_back(group.name);
@@ -626,8 +644,8 @@ class WhenBuilder {
   }
   std::string named(int body) const { return body < 0 ? "the room" : model_.bodies[std::size_t(body)].name; }
 
-  // A joint that an event makes of two, so that nothing moves between them: a weld; of particles, which have
-  // no turn, one of less. One for each two.
+  // A joint that an event makes of two, so that nothing moves between them: a weld; of what does not turn a
+  // pin at its middle. One for each two.
   int glued(int a, int b) {
     if (a < 0) std::swap(a, b);
     b = std::max(b, -1);
@@ -637,9 +655,7 @@ class WhenBuilder {
     if (!known.second) return known.first->second;
     sim::Joint<D> it;
     it.name = fmt::format("{}+{}", named(a), b < 0 ? "room" : named(b));
-    it.kind = turns(a) && turns(b) ? sim::JointKind::weld
-              : turns(b)           ? sim::JointKind::pin
-                                   : sim::JointKind::rod;
+    it.kind = turns(a) && turns(b) ? sim::JointKind::weld : sim::JointKind::pin;
     it.a.body = a, it.b.body = b, it.later = true;
     model_.joints.push_back(std::move(it));
     world_.state.broken.push_back(1);

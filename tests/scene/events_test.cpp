@@ -835,6 +835,35 @@ TEST(Events, MarksStandForTimes) {
   EXPECT_EQ(put.film.speed.frozen()[0].world, sim::rational(451524, 1'000'000));
 }
 
+// A value that is zero at rest, and true from the first moment on, fires once.
+TEST(Events, AValueThatBecomesTrueFromRestFiresOnce) {
+  for (const char* collision : {"event", "contact"}) {
+    const Scene scene =
+        parse(std::string("[room]\nsize = [8, 30]\n[physics]\ncollision = \"") + collision +
+                  "\"\n[[particle]]\nname = \"p\"\nposition = [4, 20]\n[[when]]\nvalue = \"p.vy < 0\"\n"
+                  "again = true\ndo = [{ set = \"room.gravity\", to = [0, -9.81] }]\n",
+              "a.toml");
+    const auto run = scene.run();
+    ASSERT_TRUE(std::holds_alternative<sim::Snapshot>(run->at(sim::rational(1)))) << collision;
+    EXPECT_EQ(run->events().size(), 1u) << collision;
+  }
+}
+
+// A run may end within a step: what fires in it until then is told.
+TEST(Events, OfTheLastPartOfAStepAreListed) {
+  const Scene scene = parse(
+      "[room]\nsize = [8, 30]\n[physics]\ncollision = \"event\"\nrate = 10\n[[particle]]\nname = \"p\"\n"
+      "position = [4, 20]\nvelocity = [1, 0]\n[[when]]\nvalue = \"p.x > 4.63\"\ndo = [{ mark = \"a\" }]\n"
+      "[[when]]\nvalue = \"p.x > 4.67\"\ndo = [{ mark = \"b\" }]\n",
+      "a.toml");
+  const auto run = scene.run();
+  const sim::Rational end = sim::rational(65, 100);
+  run->at(end);
+  const auto all = sim::events_until(*run, end);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_NEAR(sim::value(all[0].time), 0.63, 1e-12);
+}
+
 // `event` promises exact times, and bonded bodies are known at the ends of steps.
 TEST(Events, OfBondsAreRefusedWhereTimesAreExact) {
   const std::string pieces =

@@ -217,7 +217,7 @@ int list_events(const StatesFlags& flags, const scene::Scene& scene, sim::Run& r
   doing("simulating", sim::value(run.now()), sim::value(to), "s");
   const auto outcome = run.at(to);
   if (std::holds_alternative<sim::Stopped>(outcome)) return kInterrupted;
-  sink.put(events_text(run.events(), form(flags) == "json", scene.file));
+  sink.put(events_text(sim::events_until(run, to), form(flags) == "json", scene.file));
   if (const auto* trouble = std::get_if<sim::Trouble>(&outcome)) {
     std::fflush(stdout);
     throw TroubleError(scene.file, *trouble, "");

@@ -450,9 +450,10 @@ Story story(const scene::Scene& scene) {
     for (std::int64_t k = 0; k <= steps && !trouble; k += stride) read(last = sim::rational(k) / run->rate());
     if (!trouble && last < scene.duration) read(scene.duration);
   }
-  account.heed(run->events());
+  const std::vector<sim::RunEvent> events = sim::events_until(*run, scene.duration);
+  account.heed(events);
   Story all{account.sentences(), account.happenings()};
-  for (const sim::RunEvent& event : run->events())
+  for (const sim::RunEvent& event : events)
     for (const std::string& mark : event.marks)
       all.events.push_back({sim::value(event.time), scene::one_line(mark)});
   sort(all.events);

@@ -217,7 +217,7 @@ Answers answers(const scene::Scene& scene, const std::vector<Question>& asked) {
     const auto before = scene.run();
     before->heed(interrupted);
     if (std::holds_alternative<sim::Stopped>(before->at(scene.duration))) throw Interrupted();
-    events = before->events();
+    events = sim::events_until(*before, scene.duration);
   }
 
   // the instants asked for, in the order of time

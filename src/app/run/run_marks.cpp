@@ -42,7 +42,7 @@ scene::RunMarks marks_of_run(const scene::Scene& scene) {
   run->heed(interrupted);
   if (std::holds_alternative<sim::Stopped>(run->at(scene.duration))) throw Interrupted();
   scene::RunMarks found;
-  for (const sim::RunEvent& event : run->events()) {
+  for (const sim::RunEvent& event : sim::events_until(*run, scene.duration)) {
     for (const std::string& mark : event.marks) found.instants[mark].push_back(microsecond(event.time));
     if (event.stop && !found.stop) found.stop = microsecond(event.time);
   }

@@ -114,6 +114,7 @@ class Simulation::Followed {
     const std::int64_t here = sim::floor(run_->now() * run_->rate());
     if (auto nearer = options_.nearer(number_, here, step_before(t))) begin(std::move(nearer));
     const sim::Rational stride{1, 1};
+    if (at_ < run_->now()) at_ = run_->now();
     while (at_ + stride < t && !trouble_ && !interrupted()) {
       at_ = at_ + stride;
       auto moment = at(at_);

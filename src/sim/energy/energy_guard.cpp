@@ -89,7 +89,7 @@ void EnergyGuard<D>::open(const State<D>& state, double t) {
   t_ = t;
   if (forces_.potentials()) forces_.gather(state);
   const int n = int(weights_.size());
-  x_ = state.x, before_.resize(n), now_.resize(n), booked_.assign(n, 0);
+  x_ = state.x, broken_ = state.broken, before_.resize(n), now_.resize(n), booked_.assign(n, 0);
   for (int i = 0; i < n; ++i) {
     before_[i] = kinetic(state, i) - weights_[i].mass * model_.gravity.dot(state.x[i]);
   }
@@ -163,7 +163,8 @@ void EnergyGuard<D>::gather(const State<D>& state) {
     link(model_.joints[std::size_t(i)].a.body, model_.joints[std::size_t(i)].b.body, false);
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     const Joint<D>& joint = model_.joints[i];
-    if (i < state.broken.size() && state.broken[i]) continue;
+    // one that has broken in this step has held in it
+    if (i < broken_.size() && broken_[i]) continue;
     link(joint.a.body, joint.b.body, true);
     if (!joint.over.empty())
       joint.each_body([&](int a) { joint.each_body([&](int b) { link(a, b, true); }); });
@@ -219,7 +220,8 @@ void EnergyGuard<D>::gather(const State<D>& state) {
   for (const Grip<D>& grip : state.grips) {
     if (counts(grip.body)) island(grip.body).driven = true;
   }
-  // slowed before any contact, or by something no longer near; but what falls by Euler's scheme gains by itself
+  // slowed before any contact, or by something no longer near; but what falls by Euler's scheme gains by
+  // itself
   const bool gains = model_.integrator == Integrator::euler;
   for (Island& it : sums_) {
     if (it.touched || (it.tied && !it.jointed) || gains) continue;

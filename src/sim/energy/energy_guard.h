@@ -82,6 +82,7 @@ class EnergyGuard {
   std::vector<Weight> weights_;
   double size_ = 0;  // J: m g times the room's height
   std::vector<Vec<D>> x_;
+  std::vector<char> broken_;                          // joints, at open()
   std::vector<double> before_, now_, booked_;         // one a body, J
   std::vector<int> sprung_;                           // joints with a spring
   std::vector<double> springs_before_, springs_now_;  // J: of springs, then of those

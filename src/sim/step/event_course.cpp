@@ -18,11 +18,13 @@ constexpr double kTouchTime = 1e-7;  // likewise
 
 }  // namespace
 
-// finds all that becomes true in the course at hand, from begun_ to `state`
+// finds all that becomes true in the course at hand, from begun_ to `state`, or of it the touches of what is
+// joined by them, which are known at any time
 template <int D>
-void Events<D>::find(const State<D>& state, double from, double to) {
+void Events<D>::find(const State<D>& state, double from, double to, bool only_joining) {
   for (int w = 0; w < int(model_.whens.size()); ++w) {
     const When<D>& when = model_.whens[std::size_t(w)];
+    if (only_joining && !joins(when)) continue;
     switch (when.on) {
       case On::touches:
       case On::leaves:
@@ -296,8 +298,12 @@ void Events<D>::find_crossings(const State<D>& state, int w, double from, double
   }
 }
 
-template void Events<2>::find(const State<2>& state, double from, double to);
-template void Events<3>::find(const State<3>& state, double from, double to);
+template void Events<2>::find(const State<2>& state, double from, double to, bool only_joining);
+template bool Events<2>::joins(const When<2>& when) const;
+template void Events<2>::search_touch(typename Events<2>::Found& found, double from, double to);
+template void Events<3>::find(const State<3>& state, double from, double to, bool only_joining);
+template bool Events<3>::joins(const When<3>& when) const;
+template void Events<3>::search_touch(typename Events<3>::Found& found, double from, double to);
 template void Events<2>::find_times(const State<2>& state, double from, double to);
 template void Events<3>::find_times(const State<3>& state, double from, double to);
 template void Events<2>::find_breaks(const State<2>& state, int w, double from, double to);

@@ -19,12 +19,12 @@ namespace {
 constexpr double kFound = 1e-12;        // of a step
 constexpr double kFirstBracket = 1e-8;  // of a step
 constexpr double kLastBracket = 1e-2;
-constexpr double kMoment = 1e-9;  // of a step
-constexpr int kMostTries = 60;    // partial steps of a search
-constexpr int kLooksAt = 4;       // of a span of the course, at the ends of which the motion is looked at
-constexpr int kPeakTries = 30;    // where it is true for a moment alone
-constexpr int kSamples = 16;      // of a smooth piece
-constexpr double kBeside = 1e-3;  // of the way between two samples
+constexpr int kMostTries = 60;       // partial steps of a search
+constexpr int kLooksAt = 4;          // of a span of the course, at the ends of which the motion is looked at
+constexpr int kPeakTries = 30;       // where it is true for a moment alone
+constexpr int kSamples = 16;         // of a smooth piece
+constexpr double kBeside = 1e-3;     // of the way between two samples
+constexpr double kJustAfter = 1e-8;  // of a smooth piece
 constexpr double kGolden = 0.3819660112501051;
 
 template <int D>
@@ -205,6 +205,12 @@ void Events<D>::find_values(const State<D>& state, int w, double from, double to
                  std::span(at).subspan(i, std::min(at.size() - i, std::size_t(Program::kLanes))), inside);
         truth.insert(truth.end(), truth_.begin(), truth_.end());
       }
+    }
+    // what has just fired, on the border itself, goes on from there
+    if (s == 0 && was && truth[0] == 0) {
+      const double after = a + kJustAfter * (b - a);
+      evaluate(state, w, from, to, std::span(&after, 1), inside);
+      truth[0] = truth_[0];
     }
     for (std::size_t i = 0; i < at.size(); ++i) {
       const bool now = truth[i] != 0;

@@ -240,7 +240,7 @@ std::optional<Trouble> Events<D>::advance(State<D>& state, double to) {
 
     // a frame between two steps sees what the step has only at its end
     found_.clear();
-    if (exact_ || end == 1 || end < to) find(state, from, end);
+    find(state, from, end, !(exact_ || end == 1 || end < to));
     find_times(begun_, from, end);
     std::erase_if(found_, [&](Found& each) { return !confirm(state, each, from, end); });
     for (Found& each : found_) {
@@ -263,6 +263,8 @@ std::optional<Trouble> Events<D>::advance(State<D>& state, double to) {
       const TimeStamp stamp = at < 1 ? TimeStamp{begun_.step, at} : TimeStamp{begun_.step + 1, 0};
       std::vector<Due> actions;
       for (std::size_t k = i; k < j; ++k) {
+        // two that bounce twice in a step come to touch once where they are joined
+        if (k > i && found_[k].when == found_[k - 1].when && found_[k].which == found_[k - 1].which) continue;
         if (!act(state, found_[k], stamp)) continue;
         const When<D>& when = model_.whens[std::size_t(found_[k].when)];
         if (when.only_marks()) continue;
@@ -331,7 +333,7 @@ bool Events<D>::act(State<D>& state, const Found& found, TimeStamp at) {
 // does what is asked for at one instant. What the room's hand gives by it of energy is work.
 template <int D>
 void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeStamp at) {
-  bool any = false;
+  bool any = false, joined = false;
   for (const auto& [action, which] : actions) {
     if (action->what == Action::Do::stop) state.events.stopped = 1;
     any = any || (action->what != Action::Do::stop && action->what != Action::Do::mark);
@@ -371,6 +373,7 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
           if (joins) {
             const auto joint = std::size_t(made.index);
             state.made[joint] = as_it_stands(model_.joints[joint], state), state.broken[joint] = 0;
+            joined = true;
           }
           if (made.of != Change<D>::Of::hold) break;
           state.v[std::size_t(made.index)].setZero();
@@ -388,6 +391,22 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
     state.work[0] += energies(stepper_->model(state), state, stepper_->paths(), t).total() - before;
   std::fill(state.frozen.begin(), state.frozen.end(), 0);
   std::fill(state.quiet.begin(), state.quiet.end(), 0.0);
+  stepper_->begin_anew(state, t);
+  if (joined) jerk(state, at, t);
+}
+
+// Velocities with what has just been joined: after the impulses of this instant, which those of a moment
+// from it are.
+template <int D>
+void Events<D>::jerk(State<D>& state, TimeStamp at, double t) {
+  probed_ = state;
+  stepper_->watch(nullptr);
+  const bool troubled = stepper_->go(probed_, at.fraction, std::min(at.fraction + kMoment, 1.0)).has_value();
+  stepper_->watch(&course_);
+  if (troubled) return;  // the step itself tells of it
+  state.v = probed_.v, state.spin = probed_.spin, state.body_spin = probed_.body_spin;
+  for (std::size_t i = 0; i < state.chain_states.size(); ++i)
+    state.chain_states[i].v = probed_.chain_states[i].v;
   stepper_->begin_anew(state, t);
 }
 

@@ -60,6 +60,7 @@ class Events {
   };
 
   static constexpr double kSameInstant = 1e-9;  // of a step: what is as near happens together
+  static constexpr double kMoment = 1e-9;       // of a step: what is known only a moment later
   static constexpr int kNarrowings = 60;        // of a bracket, by halves
 
   // whether a joint, or a bond as -1 - bond, is broken
@@ -79,7 +80,7 @@ class Events {
   void sort_meetings();
 
   // what becomes true between `from` and `to`, begun_ and `state`
-  void find(const State<D>& state, double from, double to);
+  void find(const State<D>& state, double from, double to, bool only_joining);
   void find_times(const State<D>& state, double from, double to);
   void find_touches(const State<D>& state, int when, double from, double to);
   void find_crossings(const State<D>& state, int when, double from, double to);
@@ -112,6 +113,7 @@ class Events {
     int which;
   };
   void change(State<D>& state, const std::vector<Due>& actions, TimeStamp at);
+  void jerk(State<D>& state, TimeStamp at, double t);
   void note_truths(State<D>& state, double from, double to);
 
   const Model<D>& model_;

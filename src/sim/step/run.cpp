@@ -1,9 +1,9 @@
 #include "sim/step/run.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 
@@ -45,7 +45,8 @@ class RunOf final : public Run {
 
   std::variant<Snapshot, Trouble, Stopped> at(Rational t) override {
     const TimeStamp to = time_stamp(t, model_.rate);
-    assert(trouble_ || to.step >= state_.step);
+    if (!trouble_ && to.step < state_.step)
+      throw std::invalid_argument("a run goes on: it was asked for an instant before the last");
     if (std::holds_alternative<Stopped>(go(to.step))) return Stopped{};
     divergence_.reset();
     if (trouble_) return shown_ ? last_finite(*trouble_) : Answer(*trouble_);
@@ -353,6 +354,14 @@ std::unique_ptr<Run> begun(World<D> world, std::span<const std::uint64_t> words)
 }
 
 }  // namespace
+
+std::vector<RunEvent> events_until(Run& run, Rational t) {
+  const Rational steps = t * run.rate();
+  if (const std::int64_t whole = floor(steps); rational(whole) < steps) run.go(whole + 1);
+  std::vector<RunEvent> all = run.events();
+  std::erase_if(all, [&](const RunEvent& it) { return t < it.time; });
+  return all;
+}
 
 std::unique_ptr<Run> run(World<2> world, std::span<const std::uint64_t> saved) {
   return begun(std::move(world), saved);

@@ -64,8 +64,8 @@ class Run {
   virtual const SceneInfo& scene_info() const = 0;
   virtual Rational rate() const = 0;
 
-  /// Goes on to the instant t (s, >= 0 and not before the last one asked for). Trouble ends the run: the
-  /// answer to every later call is the same trouble.
+  /// Goes on to the instant t (s, >= 0). Throws std::invalid_argument for one in a step before the last one
+  /// asked for. Trouble ends the run: the answer to every later call is the same trouble.
   virtual std::variant<Snapshot, Trouble, Stopped> at(Rational t) = 0;
 
   /// Goes on to a whole step, without a snapshot of it. What a force of a program throws leaves the run where
@@ -121,6 +121,10 @@ class RunWithoutSteps : public Run {
   BodyColumns columns() const final { return {}; }
   std::vector<RunEvent> events() const final { return {}; }
 };
+
+/// What fires up to t, the last instant that the run was asked for, in the order of time. The run goes on to
+/// the end of its step for that.
+std::vector<RunEvent> events_until(Run& run, Rational t);
 
 /// A run of a world from its state, or from one that was saved of a run of the same world: it goes on to the
 /// same bits. None where that is no state of this world. A world that lacks something
