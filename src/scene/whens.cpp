@@ -645,7 +645,7 @@ class WhenBuilder {
   std::string named(int body) const { return body < 0 ? "the room" : model_.bodies[std::size_t(body)].name; }
 
   // A joint that an event makes of two, so that nothing moves between them: a weld; of what does not turn a
-  // pin at its middle. One for each two.
+  // pin at its middle, of two particles, which turn about each other, a rod. One for each two.
   int glued(int a, int b) {
     if (a < 0) std::swap(a, b);
     b = std::max(b, -1);
@@ -655,7 +655,12 @@ class WhenBuilder {
     if (!known.second) return known.first->second;
     sim::Joint<D> it;
     it.name = fmt::format("{}+{}", named(a), b < 0 ? "room" : named(b));
-    it.kind = turns(a) && turns(b) ? sim::JointKind::weld : sim::JointKind::pin;
+    const auto point = [&](int body) {
+      return body >= 0 && is_point(model_.bodies[std::size_t(body)].shape);
+    };
+    it.kind = turns(a) && turns(b)   ? sim::JointKind::weld
+              : point(a) && point(b) ? sim::JointKind::rod
+                                     : sim::JointKind::pin;
     it.a.body = a, it.b.body = b, it.later = true;
     model_.joints.push_back(std::move(it));
     world_.state.broken.push_back(1);

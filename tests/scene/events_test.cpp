@@ -849,6 +849,25 @@ TEST(Events, AValueThatBecomesTrueFromRestFiresOnce) {
   }
 }
 
+// What sleeps on the floor touches it when it is struck, too, and before.
+TEST(Events, WhatSleepsIsNotLostAndFoundWhenItIsStruck) {
+  for (const char* collision : {"event", "contact"}) {
+    const Scene scene =
+        parse(std::string("[room]\nsize = [6, 4]\n[physics]\ncollision = \"") + collision +
+                  "\"\n[[box]]\nname = \"a\"\nsize = [0.4, 0.4]\nposition = [3, 0.2]\nelasticity = 0\n"
+                  "[[box]]\nname = \"b\"\nsize = [0.4, 0.4]\nposition = [3, 2]\nelasticity = 0\n"
+                  "[[when]]\ntouches = [\"a\", \"floor\"]\nagain = true\ndo = [{ mark = \"floor\" }]\n"
+                  "[[when]]\nleaves = [\"a\", \"floor\"]\nagain = true\ndo = [{ mark = \"up\" }]\n"
+                  "[[when]]\ntouches = [\"a\", \"b\"]\ndo = [{ mark = \"ab\" }]\n",
+              "a.toml");
+    const auto run = scene.run();
+    ASSERT_TRUE(std::holds_alternative<sim::Snapshot>(run->at(sim::rational(9, 10)))) << collision;
+    const auto all = run->events();
+    ASSERT_EQ(all.size(), 1u) << collision;
+    EXPECT_EQ(all[0].marks, std::vector<std::string>{"ab"});
+  }
+}
+
 // A run may end within a step: what fires in it until then is told.
 TEST(Events, OfTheLastPartOfAStepAreListed) {
   const Scene scene = parse(

@@ -266,6 +266,30 @@ TEST(Breaking, LosesNoMomentum) {
   }
 }
 
+// One that breaks as soon as it is made has broken; what a moved body gives to what it catches is work.
+TEST(Joining, WhatIsMadeMayBreakAndBeGivenWork) {
+  for (const Manner& manner : kManners) {
+    const TextRun breaks(
+        plane_without_walls(manner, "gravity = [0, -9.81]") + disc("bob", 1, 0.1, "position = [0, 0]") +
+        "[[joint]]\nname = \"w\"\ntype = \"weld\"\nbetween = [\"bob\", \"room\"]\njoined = false\n"
+        "breaks = 5\n[[when]]\ntime = 0.25\ndo = [{ join = \"w\" }]\n[[when]]\nbreaks = \"w\"\ndo = "
+        "[{ mark = \"broke\" }]\n");
+    breaks.at(1);
+    const auto events = breaks.run->events();
+    ASSERT_EQ(events.size(), 2u) << manner.name;
+    EXPECT_NEAR(sim::value(events[1].time), 0.25, manner.name == "event" ? 1e-9 : 0.004) << manner.name;
+
+    const TextRun caught(
+        plane_without_walls(manner, "gravity = [0, 0]") +
+        "[[box]]\nname = \"plate\"\nsize = [2, 0.2]\nposition = [-2, 0]\nmotion = { x = \"2*t\" }\n" +
+        disc("a", 2, 0.2, "position = [-1, 2]") +
+        "[[when]]\ntime = 0.5\ndo = [{ join = [\"a\", \"plate\"] }]\n");
+    const sim::Snapshot now = caught.at(0.7);
+    EXPECT_NEAR(now.bodies[number_of(caught, "a")].velocity.x(), 2, 1e-9) << manner.name;
+    EXPECT_NEAR(now.energies.work, 2 * 2 * 2, 1e-6) << manner.name;
+  }
+}
+
 TEST(Joining, WhatCannotBeJoinedIsRefused) {
   const std::string room = plane_without_walls(kManners[0]) + disc("a", 1, 0.3, "position = [-2, 0.25]") +
                            disc("b", 1, 0.3, "position = [0, 0]\nfixed = true") +

@@ -118,7 +118,7 @@ Vec3 net_force(const sim::SceneInfo& cast, const sim::Snapshot& now, int body) {
   const sim::SceneInfo::Body& its = cast.bodies[std::size_t(body)];
   if (its.fixed) return Vec3::Zero();
   const sim::Snapshot::Body& it = now.bodies[std::size_t(body)];
-  Vec3 sum = its.mass * cast.gravity + it.drag + it.field + it.blast + it.held;
+  Vec3 sum = its.mass * now.gravity.value_or(cast.gravity) + it.drag + it.field + it.blast + it.held;
   sum += total(touches(now, body, Quantity::contact)) + total(pulls(cast, now, body, true));
   for (const sim::Snapshot::Mouse& mouse : now.mice)
     if (mouse.body == body) sum += mouse.force;
@@ -148,7 +148,7 @@ std::vector<Reading> readings(const Marks::Vector& vector, const sim::SceneInfo&
     case Quantity::momentum:
       return {{at, its.mass * body.velocity}};
     case Quantity::weight:
-      return {{at, its.mass * cast.gravity}};
+      return {{at, its.mass * now.gravity.value_or(cast.gravity)}};
     case Quantity::net_force:
       return {{at, net_force(cast, now, vector.body)}};
     case Quantity::drag:

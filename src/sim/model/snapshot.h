@@ -160,6 +160,7 @@ struct Snapshot {
   std::vector<Joint> joints;
   std::vector<Contact> contacts;
   Energies energies;
+  std::optional<Vec3> gravity = {};      // of the room now, m/s^2; none: as at the start
   Vec3 momentum = Vec3::Zero();          // kg m/s
   Vec3 angular_momentum = Vec3::Zero();  // about the origin, kg m^2/s; in the plane (0, 0, L)
 };

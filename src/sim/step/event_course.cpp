@@ -102,6 +102,13 @@ void Events<D>::spans(const State<D>& state, std::pair<int, int> pair, bool touc
     return;
   }
   std::sort(spans_.begin(), spans_.end(), [](const Span& a, const Span& b) { return a.begun < b.begun; });
+  // what sleeps holds until something strikes it
+  const auto stays = [&](int body) {
+    return body < 0 || model_.bodies[std::size_t(body)].fixed ||
+           (std::size_t(body) < begun_.frozen.size() && begun_.frozen[std::size_t(body)]);
+  };
+  if (touched && stays(pair.first) && stays(pair.second))
+    spans_.insert(spans_.begin(), {from, spans_.front().begun});
   std::size_t kept = 0;
   for (std::size_t i = 1; i < spans_.size(); ++i) {
     if (spans_[i].begun - spans_[kept].ended <= kSameInstant)

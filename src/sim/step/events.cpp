@@ -374,6 +374,7 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
             const auto joint = std::size_t(made.index);
             state.made[joint] = as_it_stands(model_.joints[joint], state), state.broken[joint] = 0;
             joined = true;
+            not_broken(state, made.index);
           }
           if (made.of != Change<D>::Of::hold) break;
           state.v[std::size_t(made.index)].setZero();
@@ -395,6 +396,16 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
   if (joined) jerk(state, at, t);
 }
 
+// a joint holds from now on, and may break again
+template <int D>
+void Events<D>::not_broken(State<D>& state, int joint) {
+  for (int w = 0; w < int(model_.whens.size()); ++w) {
+    const When<D>& when = model_.whens[std::size_t(w)];
+    for (int k = 0; when.on == On::breaks && k < when.things(); ++k)
+      if (when.those[std::size_t(k)] == joint) state.events.on[std::size_t(slot(w, k))] = 0;
+  }
+}
+
 // Velocities with what has just been joined: after the impulses of this instant, which those of a moment
 // from it are.
 template <int D>
@@ -405,6 +416,7 @@ void Events<D>::jerk(State<D>& state, TimeStamp at, double t) {
   stepper_->watch(&course_);
   if (troubled) return;  // the step itself tells of it
   state.v = probed_.v, state.spin = probed_.spin, state.body_spin = probed_.body_spin;
+  state.work = probed_.work;  // of what is moved
   for (std::size_t i = 0; i < state.chain_states.size(); ++i)
     state.chain_states[i].v = probed_.chain_states[i].v;
   stepper_->begin_anew(state, t);

@@ -113,6 +113,7 @@ class Events {
     int which;
   };
   void change(State<D>& state, const std::vector<Due>& actions, TimeStamp at);
+  void not_broken(State<D>& state, int joint);
   void jerk(State<D>& state, TimeStamp at, double t);
   void note_truths(State<D>& state, double from, double to);
 

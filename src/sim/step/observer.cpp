@@ -119,6 +119,7 @@ class SeenFrom final : public Run {
       it.angle -= frame.angle;
       for (Vec3* f : {&it.blast, &it.drag, &it.field, &it.held, &it.torque}) frame.vector(*f);
     }
+    if (now.gravity) frame.vector(*now.gravity);
     for (Snapshot::Spring& it : now.springs) frame.place(it.a), frame.place(it.b), frame.vector(it.force);
     for (Snapshot::Joint& it : now.joints) {
       frame.place(it.a), frame.place(it.b), frame.vector(it.force), frame.vector(it.torque);

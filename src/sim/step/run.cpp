@@ -17,6 +17,7 @@ namespace obscura::sim {
 namespace {
 
 constexpr double kTrackRate = 120;              // points a second of a way, about
+constexpr double kRounding = 1e-9;              // of a step: of the time of an event
 constexpr double kFirst = 1 - 1.0 / (1 << 20);  // of a step: so far the first is tried for its forces
 
 template <int D>
@@ -359,7 +360,9 @@ std::vector<RunEvent> events_until(Run& run, Rational t) {
   const Rational steps = t * run.rate();
   if (const std::int64_t whole = floor(steps); rational(whole) < steps) run.go(whole + 1);
   std::vector<RunEvent> all = run.events();
-  std::erase_if(all, [&](const RunEvent& it) { return t < it.time; });
+  // their times may be later by rounding
+  const double end = value(t) + kRounding / value(run.rate());
+  std::erase_if(all, [&](const RunEvent& it) { return value(it.time) > end; });
   return all;
 }
 

@@ -303,6 +303,7 @@ Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>
                   double t) {
   const Model<D>& model = scene.drives.empty() && scene.whens.empty() ? scene : stepper.model(state);
   Snapshot now;
+  now.gravity = to_3d<D>(stepper.model(state).gravity);
   now.time = t;
   now.step = state.step;
   now.bodies.resize(model.bodies.size());
