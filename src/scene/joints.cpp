@@ -19,7 +19,6 @@
 #include "scene/links.h"
 #include "scene/mechanisms.h"
 #include "sim/constraint/joints/joint.h"
-#include "sim/math/exponential.h"
 #include "sim/math/orientation.h"
 #include "sim/model/drives.h"
 
@@ -67,14 +66,6 @@ template <int D>
 sim::End<D> on(const sim::World<D>& world, int body, const sim::Vec<D>& at) {
   if (body < 0) return {-1, at};
   return {body, as_seen<D>(world, body, at - world.state.x[std::size_t(body)])};
-}
-
-// the turn of one body against another: an angle, or a rotation vector in the other's frame
-sim::AngularVec<2> against(const sim::World<2>& world, int a, int b) {
-  return sim::AngularVec<2>(turn_of(world, a)[0] - turn_of(world, b)[0]);
-}
-sim::AngularVec<3> against(const sim::World<3>& world, int a, int b) {
-  return sim::logarithm(sim::composed<3>(sim::inverse<3>(turn_of(world, b)), turn_of(world, a)));
 }
 
 // one side of `between`: its meaning, and whether it gives a place
@@ -190,7 +181,7 @@ class Joining {
       return refuse(place,
                     fmt::format("'{}' is fixed, and so is the other end: nothing could move", body.name));
 
-    it.turn = against(world_, it.a.body, it.b.body);
+    it.turn = sim::as_it_stands(it, world_.state).turn;
     if (its_.axis) {
       const Vec axis = fields_.given("axis") ? fields_.vector<D>("axis")
                        : its_.angle          ? Vec(Vec::Unit(D - 1))

@@ -256,14 +256,16 @@ bool Events<D>::true_now(const State<D>& as_it_is, int w, double fraction) {
 }
 
 // Into probed_: a state with the forces of its instant, which are those that the next moment of its motion
-// begins with. The exact solver keeps those of contacts as they were at the last event of a step.
+// begins with, and the velocities after its impacts. The exact solver keeps the forces of contacts as they
+// were at the last event of a step. False: it cannot go on.
 template <int D>
-void Events<D>::probe(const State<D>& state, double fraction) {
+bool Events<D>::probe(const State<D>& state, double fraction) {
   probed_ = state;
   stepper_->watch(nullptr);
   const double from = state.step > begun_.step ? 0 : fraction;
-  stepper_->go(probed_, from, from + kMoment < 1 ? from + kMoment : 1);
+  const bool troubled = stepper_->go(probed_, from, std::min(from + kMoment, 1.0)).has_value();
   stepper_->watch(&course_);
+  return !troubled;
 }
 
 // what was found, on the motion itself: whether it is so at a fraction of the step, and by how much
@@ -398,8 +400,8 @@ template void Events<2>::find_values(const State<2>& state, int w, double from, 
 template void Events<3>::find_values(const State<3>& state, int w, double from, double to);
 template bool Events<2>::true_now(const State<2>& as_it_is, int w, double fraction);
 template bool Events<3>::true_now(const State<3>& as_it_is, int w, double fraction);
-template void Events<2>::probe(const State<2>& state, double fraction);
-template void Events<3>::probe(const State<3>& state, double fraction);
+template bool Events<2>::probe(const State<2>& state, double fraction);
+template bool Events<3>::probe(const State<3>& state, double fraction);
 template bool Events<2>::confirm(const State<2>& state, typename Events<2>::Found& found, double from,
                                  double to);
 template bool Events<3>::confirm(const State<3>& state, typename Events<3>::Found& found, double from,

@@ -393,7 +393,7 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
   std::fill(state.frozen.begin(), state.frozen.end(), 0);
   std::fill(state.quiet.begin(), state.quiet.end(), 0.0);
   stepper_->begin_anew(state, t);
-  if (joined) jerk(state, at, t);
+  if (joined) jerk(state, at.fraction, t);
 }
 
 // a joint holds from now on, and may break again
@@ -409,12 +409,8 @@ void Events<D>::not_broken(State<D>& state, int joint) {
 // Velocities with what has just been joined: after the impulses of this instant, which those of a moment
 // from it are.
 template <int D>
-void Events<D>::jerk(State<D>& state, TimeStamp at, double t) {
-  probed_ = state;
-  stepper_->watch(nullptr);
-  const bool troubled = stepper_->go(probed_, at.fraction, std::min(at.fraction + kMoment, 1.0)).has_value();
-  stepper_->watch(&course_);
-  if (troubled) return;  // the step itself tells of it
+void Events<D>::jerk(State<D>& state, double fraction, double t) {
+  if (!probe(state, fraction)) return;  // the step itself tells of it
   state.v = probed_.v, state.spin = probed_.spin, state.body_spin = probed_.body_spin;
   state.work = probed_.work;  // of what is moved
   for (std::size_t i = 0; i < state.chain_states.size(); ++i)

@@ -95,7 +95,7 @@ class Events {
                 double inside);
   bool true_now(const State<D>& state, int when, double fraction);
   double read(const State<D>& state, const Reading& of);
-  void probe(const State<D>& state, double fraction);
+  bool probe(const State<D>& state, double fraction);
   double side_of(const When<D>& when, const Vec<D>& x) const;
   bool within(const When<D>& when, const Vec<D>& x) const;
   Tried attempt(const Found& found, double from, double at);
@@ -114,7 +114,7 @@ class Events {
   };
   void change(State<D>& state, const std::vector<Due>& actions, TimeStamp at);
   void not_broken(State<D>& state, int joint);
-  void jerk(State<D>& state, TimeStamp at, double t);
+  void jerk(State<D>& state, double fraction, double t);
   void note_truths(State<D>& state, double from, double to);
 
   const Model<D>& model_;

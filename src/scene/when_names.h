@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/bonds.h"
+#include "scene/complaints.h"
+#include "scene/fields.h"
+#include "scene/roster.h"
+#include "sim/model/model.h"
+
+namespace obscura::scene {
+
+/// What the names in [[when]] mean.
+template <int D>
+struct WhenNames {
+  const Node& top;
+  const NameTable& roster;
+  const std::vector<BondRange>& bonds;
+  const sim::Model<D>& model;
+  Diagnostics& complaints;
+
+  /// Whether a name means a body, without a complaint.
+  bool is_body(const std::string& text) const;
+  /// The bodies, or walls as -1 - wall, of one side of a pair. Complains and gives none where there are none.
+  std::vector<int> side(const Node& node) const;
+  /// Joints of a name: one, those of a list of copies, or all pieces of a rope over wheels.
+  std::vector<int> joints(const std::string& text) const;
+  /// What is said where there are none.
+  std::string unknown_joint(const std::string& text) const;
+};
+
+/// act(action) for each action of each condition.
+template <class Act>
+void each_action(const Node& top, Act&& act) {
+  const Node* all = top.find("when");
+  for (std::size_t k = 0; all && k < all->list().size(); ++k) {
+    const Node* actions = all->list()[k].find("do");
+    for (std::size_t i = 0; actions && actions->is_list() && i < actions->list().size(); ++i)
+      act(actions->list()[i]);
+  }
+}
+
+}  // namespace obscura::scene
