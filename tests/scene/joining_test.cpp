@@ -183,6 +183,12 @@ TEST(Joining, FromItsInstantOnBothMoveAsOne) {
       const auto all = sim::events_until(*run.run, sim::rational(1));
       ASSERT_EQ(all.size(), 1u) << manner.name;
       EXPECT_NEAR(sim::value(all[0].time), hit, manner.name == "event" ? 1e-9 : 1e-7);
+      // at the instant that a mark means
+      const auto again = parse(run.text, "a.toml", {}).run();
+      const auto marked = again->at(all[0].time);
+      ASSERT_TRUE(std::holds_alternative<sim::Snapshot>(marked));
+      for (const sim::Snapshot::Body& body : std::get<sim::Snapshot>(marked).bodies)
+        EXPECT_NEAR(body.velocity.x(), 0.125, 1e-9) << manner.name << rate;
     }
   }
 }

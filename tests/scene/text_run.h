@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
@@ -47,22 +48,21 @@ inline std::string refusal(const std::string& text) {
 
 /// The run of a scene that a test has as a text.
 struct TextRun {
+  std::string text;
   std::unique_ptr<sim::Run> run;
   mutable double asked = 0;
 
-  explicit TextRun(const std::string& text, const std::vector<std::string>& sets = {})
-      : run(parse(text, "a.toml", sets).run()) {}
+  explicit TextRun(const std::string& scene, const std::vector<std::string>& sets = {})
+      : text(scene), run(parse(scene, "a.toml", sets).run()) {}
 
-  /// The instant at t, s, to a microsecond; not before the last. A trouble fails the test, and the instant is
-  /// empty.
+  /// The instant at t, s, to a microsecond; not before the last. A trouble ends the test.
   sim::Snapshot at(double t) const {
     if (t < asked) ADD_FAILURE() << "goes back to " << t << " s, from " << asked << " s";
     asked = t;
     auto outcome = run->at(*sim::parse_rational(fmt::format("{:.6f}", t)));
     if (const auto* trouble = std::get_if<sim::Trouble>(&outcome)) {
-      ADD_FAILURE() << trouble->body << " " << trouble->quantity << " " << trouble->what << " "
-                    << trouble->likely;
-      return {};
+      throw std::runtime_error(trouble->body + " " + trouble->quantity + " " + trouble->what + " " +
+                               trouble->likely);
     }
     return std::get<sim::Snapshot>(outcome);
   }
