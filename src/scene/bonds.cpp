@@ -42,9 +42,9 @@ double apart(const sim::World<D>& world, int a, int b, double far) {
 }  // namespace
 
 template <int D>
-std::vector<BondRange> bonds(const Node& top, const NameTable& roster, sim::World<D>& world,
+std::vector<NameRange> bonds(const Node& top, const NameTable& roster, sim::World<D>& world,
                              Diagnostics& complaints) {
-  std::vector<BondRange> ranges;
+  std::vector<NameRange> ranges;
   const Node* all = top.find("bond");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "bond");
@@ -75,7 +75,7 @@ std::vector<BondRange> bonds(const Node& top, const NameTable& roster, sim::Worl
   return ranges;
 }
 
-template std::vector<BondRange> bonds<2>(const Node&, const NameTable&, sim::World<2>&, Diagnostics&);
-template std::vector<BondRange> bonds<3>(const Node&, const NameTable&, sim::World<3>&, Diagnostics&);
+template std::vector<NameRange> bonds<2>(const Node&, const NameTable&, sim::World<2>&, Diagnostics&);
+template std::vector<NameRange> bonds<3>(const Node&, const NameTable&, sim::World<3>&, Diagnostics&);
 
 }  // namespace obscura::scene

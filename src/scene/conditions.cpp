@@ -255,7 +255,7 @@ class ConditionBuilder {
 
   void breaks(const Node& node, When& when) {
     when.those = names_.joints(node.text());
-    for (const BondRange& bond : names_.bonds)
+    for (const NameRange& bond : names_.bonds)
       for (int k = bond.first; bond.name == node.text() && k < bond.end; ++k) when.those.push_back(-1 - k);
     if (when.those.empty()) {
       complaints_.add(node.place, names_.unknown_joint(node.text()));

@@ -111,10 +111,7 @@ void refuse_keys_of_mechanisms(const Fields& fields, JointKind kind, Diagnostics
   only("over", JointKind::pulley, "pulley");
   only("joints", JointKind::gear, "gear"), only("ratio", JointKind::gear, "gear");
   only("pitch", JointKind::screw, "screw");
-  if (kind == JointKind::pulley || kind == JointKind::gear)
-    if (!fields.flag("joined"))
-      complaints.add(fields.place("joined"),
-                     fmt::format("a {} is there from the start", fields.text("type")));
+  only("turns", JointKind::pulley, "pulley");
 }
 
 template <int D>
@@ -181,7 +178,7 @@ class Joining {
       return refuse(place,
                     fmt::format("'{}' is fixed, and so is the other end: nothing could move", body.name));
 
-    it.turn = sim::as_it_stands(it, world_.state).turn;
+    it.turn = sim::as_it_stands(it, world_.state, world_.model.joints.size()).turn;
     if (its_.axis) {
       const Vec axis = fields_.given("axis") ? fields_.vector<D>("axis")
                        : its_.angle          ? Vec(Vec::Unit(D - 1))

@@ -147,8 +147,10 @@ std::vector<sim::End<D>> ends(const Node& node, const Seating<D>& roster, const 
 }
 
 template <int D>
-void springs(const Node& top, const Seating<D>& roster, sim::World<D>& world, Diagnostics& complaints) {
+std::vector<NameRange> springs(const Node& top, const Seating<D>& roster, sim::World<D>& world,
+                               Diagnostics& complaints) {
   using End = sim::End<D>;
+  std::vector<NameRange> ranges;
   const Node* all = top.find("spring");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "spring");
@@ -174,8 +176,16 @@ void springs(const Node& top, const Seating<D>& roster, sim::World<D>& world, Di
         !fits(fields, "rest_length", n, complaints) ||
         too_many(world, std::size_t(n), between->place, complaints))
       continue;
+    const Node* rest = fields.given("rest_length");
+    if (!fields.flag("joined") && !rest) {
+      complaints.add(fields.place("joined"),
+                     "a spring that an event joins needs 'rest_length': it may be of any length then");
+      continue;
+    }
+    const int first = int(world.model.springs.size());
     for (int i = 0; i < n; ++i) {
       sim::Spring<D> spring;
+      spring.loose = !fields.flag("joined");
       spring.a = a[a.size() == 1 ? 0 : std::size_t(i)];
       spring.b = b[b.size() == 1 ? 0 : std::size_t(i)];
       if (spring.a.body == spring.b.body && spring.a.body >= 0 && spring.a.local == spring.b.local) {
@@ -186,12 +196,13 @@ void springs(const Node& top, const Seating<D>& roster, sim::World<D>& world, Di
       }
       spring.stiffness = number(fields.node("stiffness"), i, n);
       spring.damping = number(fields.node("damping"), i, n);
-      const Node* rest = fields.given("rest_length");
       spring.rest_length =
           rest ? number(*rest, i, n) : (start(world, spring.b) - start(world, spring.a)).norm();
       world.model.springs.push_back(spring);
     }
+    ranges.push_back({automatic(fields, "spring", k), first, int(world.model.springs.size())});
   }
+  return ranges;
 }
 
 template <int D>
@@ -270,12 +281,12 @@ void mice(const Node& top, sim::World<D>& world, Diagnostics& complaints) {
   }
 }
 
-#define OBSCURA_INSTANTIATE(D)                                                                    \
-  template sim::Vec<D> start<D>(const sim::World<D>&, const sim::End<D>&);                        \
-  template std::vector<sim::End<D>> ends<D>(const Node&, const Seating<D>&, const sim::World<D>&, \
-                                            Diagnostics&);                                        \
-  template void springs<D>(const Node&, const Seating<D>&, sim::World<D>&, Diagnostics&);         \
-  template void nets<D>(const Node&, const NameTable&, sim::World<D>&, Diagnostics&);             \
+#define OBSCURA_INSTANTIATE(D)                                                                              \
+  template sim::Vec<D> start<D>(const sim::World<D>&, const sim::End<D>&);                                  \
+  template std::vector<sim::End<D>> ends<D>(const Node&, const Seating<D>&, const sim::World<D>&,           \
+                                            Diagnostics&);                                                  \
+  template std::vector<NameRange> springs<D>(const Node&, const Seating<D>&, sim::World<D>&, Diagnostics&); \
+  template void nets<D>(const Node&, const NameTable&, sim::World<D>&, Diagnostics&);                       \
   template void mice<D>(const Node&, sim::World<D>&, Diagnostics&)
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);

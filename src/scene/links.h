@@ -4,6 +4,7 @@
 
 #include "scene/complaints.h"
 #include "scene/document.h"
+#include "scene/name_range.h"
 #include "scene/roster.h"
 #include "sim/model/state.h"
 
@@ -20,9 +21,10 @@ template <int D>
 sim::Vec<D> start(const sim::World<D>& world, const sim::End<D>& end);
 
 /// Puts the springs, the nets and the mice of a scene into its world. Requires the bodies, and model.scale
-/// for the mice.
+/// for the mice. Answers which springs each [[spring]] is.
 template <int D>
-void springs(const Node& top, const Seating<D>& roster, sim::World<D>& world, Diagnostics& complaints);
+std::vector<NameRange> springs(const Node& top, const Seating<D>& roster, sim::World<D>& world,
+                               Diagnostics& complaints);
 template <int D>
 void nets(const Node& top, const NameTable& roster, sim::World<D>& world, Diagnostics& complaints);
 template <int D>

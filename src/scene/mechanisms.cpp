@@ -29,8 +29,9 @@ constexpr double kWhole = 1e-9;
 
 // keys that neither has
 void refuse_other_keys(const Fields& fields, Diagnostics& complaints) {
+  const bool gear = fields.text("type") == "gear";
   for (const char* key : {"at", "axis", "limits", "motor", "friction", "spring"})
-    if (fields.given(key))
+    if (fields.given(key) && (gear || std::string_view(key) != "friction"))
       complaints.add(fields.place(key), fmt::format("a {} has no '{}'", fields.text("type"), key));
 }
 
@@ -78,6 +79,57 @@ double side_of_winding(const sim::Vec<2>& p, const sim::Vec<2>& c) {
   const sim::Vec<2> side = upright ? sim::Vec<2>(far[0], 0) : sim::Vec<2>(0, far[1]);
   const double turn = far[0] * side[1] - far[1] * side[0];  // from c to p
   return std::fabs(turn) <= kWhole * far.squaredNorm() ? 0 : turn > 0 ? 1 : -1;
+}
+
+// Whether a rope with friction is one that is known: it slides over things, and over several that stand
+// still.
+template <int D>
+bool rope_may_rub(const Fields& fields, double friction, const std::vector<Turn<D>>& turns, int over,
+                  const sim::World<D>& world, Diagnostics& complaints) {
+  if (const Node* rounds = fields.given("turns"); rounds && friction == 0) {
+    complaints.add(rounds->place, "'turns' is for a rope with 'friction'; without it they change nothing");
+    return false;
+  }
+  if (friction == 0) return true;
+  const Place place = fields.place("friction");
+  if (int(turns.size()) != over + 2) {
+    complaints.add(place, "a rope that is wound on a wheel does not slide there: leave 'friction' out");
+    return false;
+  }
+  if (world.model.solver == sim::Solver::iterative) {
+    complaints.add(place, "the friction of a rope is for the direct solver; write solver = \"direct\"");
+    return false;
+  }
+  const bool stands = std::all_of(turns.begin() + 1, turns.end() - 1, [&](const Turn<D>& turn) {
+    if (turn.end.body < 0) return true;
+    return world.model.bodies[std::size_t(turn.end.body)].fixed &&
+           std::none_of(world.model.drives.begin(), world.model.drives.end(),
+                        [&](const sim::Drive<D>& drive) { return drive.body == turn.end.body; });
+  });
+  if (over > 1 && !stands) {
+    complaints.add(place, "a rope with friction runs over one thing that moves, or several that stand still");
+    return false;
+  }
+  return true;
+}
+
+// its friction, and how it is wrapped around what it runs over
+template <int D>
+void rub(const Fields& fields, double friction, const std::vector<sim::Vec<D>>& at, sim::Joint<D>& it) {
+  it.friction = friction;
+  it.whole_turns = fields.given("turns") ? int(fields.number("turns")) : 0;
+  it.wrap = 2 * std::numbers::pi * it.whole_turns * double(it.around.size());
+  if constexpr (D == 2) {
+    const auto piece = [&](std::size_t i) {
+      const double from = i == 0 ? 0 : it.around[i - 1], to = i < it.around.size() ? it.around[i] : 0;
+      return sim::rope_piece<D>(at[i], at[i + 1], from - to).direction;
+    };
+    for (std::size_t i = 0; i < it.around.size(); ++i) {
+      if (it.around[i] == 0) continue;
+      const double sign = it.around[i] > 0 ? 1 : -1, turn = sign * sim::angle_between(piece(i), piece(i + 1));
+      it.wrap += turn < 0 ? turn + 2 * std::numbers::pi : turn;
+    }
+  }
 }
 
 }  // namespace
@@ -138,6 +190,8 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
   }
 
   const int n = int(turns.size());
+  const double friction = fields.number("friction");
+  if (!rope_may_rub(fields, friction, turns, int(over->list().size()), world, complaints)) return;
   std::vector<sim::Vec<D>> at;
   for (const Turn<D>& turn : turns) at.push_back(start(world, turn.end));
   std::vector<double> offsets(std::size_t(n), 0.0);
@@ -161,7 +215,8 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
       offsets[std::size_t(wheel)] = radius * side;
     }
   }
-  const auto is_wheel = [&](int i) { return turns[std::size_t(i)].radius > 0; };
+  // with friction it slides over wheels, too
+  const auto is_wheel = [&](int i) { return friction == 0 && turns[std::size_t(i)].radius > 0; };
   const bool one_piece =
       std::none_of(turns.begin(), turns.end(), [](const Turn<D>& t) { return t.radius > 0; });
   int rope = 0;
@@ -180,9 +235,16 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
     for (int i = first + 1; i < last; ++i) it.over.push_back(turns[std::size_t(i)].end);
     it.on_a.offset = is_wheel(first) ? offsets[std::size_t(first)] : 0;
     it.on_b.offset = is_wheel(last) ? offsets[std::size_t(last)] : 0;
-    it.length = 0;
+    it.length = 0, it.later = !fields.flag("joined");
+    if (friction > 0) it.around.assign(offsets.begin() + first + 1, offsets.begin() + last);
+    const auto offset = [&](int i) {
+      return i == first     ? it.on_a.offset
+             : i == last    ? it.on_b.offset
+             : friction > 0 ? offsets[std::size_t(i)]
+                            : 0;
+    };
     for (int i = first; i < last; ++i) {
-      const double from = i == first ? it.on_a.offset : 0, to = i + 1 == last ? it.on_b.offset : 0;
+      const double from = offset(i), to = offset(i + 1);
       const sim::RopePiece<D> piece =
           sim::rope_piece<D>(at[std::size_t(i)], at[std::size_t(i + 1)], from - to);
       if (!(piece.length > 0)) {
@@ -200,6 +262,7 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
       if (i == first) it.on_a.start = piece.direction;
       if (i + 1 == last) it.on_b.start = piece.direction;
     }
+    if (friction > 0) rub(fields, friction, at, it);
     if constexpr (D == 2) {
       if (it.on_a.offset != 0) it.turns.emplace_back(it.a.body, it.on_a.offset);
       if (it.on_b.offset != 0) it.turns.emplace_back(it.b.body, -it.on_b.offset);
@@ -213,7 +276,7 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
       complaints.add(length->place, "a rope on wheels is as long as it is at the start; move an end");
       return;
     }
-    if (length->number() < pieces[0].length * (1 - kWhole)) {
+    if (!pieces[0].later && length->number() < pieces[0].length * (1 - kWhole)) {
       complaints.add(length->place,
                      fmt::format("'length' is {} m and the rope is {:.6g} m long at the start; move "
                                  "an end",
@@ -221,13 +284,15 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
       return;
     }
     pieces[0].length = length->number();
+  } else if (one_piece && pieces[0].later) {
+    pieces[0].length = 0;  // as long as it is then
   }
   // numbered from the first end as typed
   if (turned_round) std::reverse(pieces.begin(), pieces.end());
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     pieces[k].name = pieces.size() == 1 ? name : fmt::format("{}[{}]", name, k);
     world.model.joints.push_back(std::move(pieces[k]));
-    world.state.broken.push_back(0);
+    world.state.broken.push_back(world.model.joints.back().later);
   }
 }
 
@@ -263,6 +328,11 @@ void gear(const Fields& fields, const std::string& name, sim::World<D>& world, D
                       wanted, D == 2 ? "pin" : "hinge"));
       return;
     }
+    if (found->later) {
+      complaints.add(joints->list()[k].place,
+                     fmt::format("'{}' is not joined at the start, and a gear needs its joints", wanted));
+      return;
+    }
     both[k] = *found;
   }
   if (joints->list()[0].text() == joints->list()[1].text()) {
@@ -277,6 +347,7 @@ void gear(const Fields& fields, const std::string& name, sim::World<D>& world, D
   sim::Joint<D> it;
   it.name = name, it.kind = JointKind::gear, it.ratio = ratio->number();
   it.breaks = given_breaks<D>(fields), it.touching = fields.flag("touching");
+  it.later = !fields.flag("joined");
   if (const Node* breaks = fields.given("breaks_torque")) it.breaks_torque = breaks->number();
   it.a = both[0].a, it.b = both[0].b, it.over = {both[1].a, both[1].b};
   it.geared = std::make_shared<const std::array<sim::Joint<D>, 2>>(both);
@@ -336,7 +407,7 @@ void gear(const Fields& fields, const std::string& name, sim::World<D>& world, D
     }
   }
   world.model.joints.push_back(std::move(it));
-  world.state.broken.push_back(0);
+  world.state.broken.push_back(world.model.joints.back().later);
 }
 
 template void pulley<2>(const Fields&, const std::string&, const Seating<2>&, sim::World<2>&, Diagnostics&);

@@ -231,8 +231,8 @@ int observer(const Node& top, const NameTable& roster, const sim::Model<D>& mode
   if (!its || (its->text() == "room" && roster.index.count("room") == 0)) return -1;
   const std::vector<int> found = roster.bodies(its->text(), its->place, complaints);
   if (found.size() > 1)
-    complaints.add(its->place,
-                   fmt::format("{} is {} bodies; one sees the room", scene::quoted(its->text()), found.size()));
+    complaints.add(its->place, fmt::format("{} is {} bodies; one sees the room", scene::quoted(its->text()),
+                                           found.size()));
   const auto refuse = [&](bool any, const char* what) {
     if (any) complaints.add(its->place, fmt::format("an observer sees a room without {}", what));
   };
@@ -266,21 +266,23 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   tracks(top, constants, roster, world, scene.look, complaints);
   for (const Seat<D>& seat : roster.seats) scene.axes.push_back(sim::quaternion<D>(seat.axes));
   ready_to_let_go(top, roster, world, complaints);
-  springs(top, roster, world, complaints);
+  const std::size_t before = complaints.count();
+  const std::vector<NameRange> sprung = springs(top, roster, world, complaints);
   nets(top, roster, world, complaints);
   joints(top, roster, constants, world, complaints);
   chains(top, roster, world, complaints);
   explosions(top, model, complaints);
   forces(top, constants, roster, world, complaints);
-  const std::vector<BondRange> bonded = bonds(top, roster, world, complaints);
+  const std::vector<NameRange> bonded = bonds(top, roster, world, complaints);
   refuse_moved_bonds(top, model, complaints);
   ignore(top, roster, model, complaints);
   refuse_off_tracks(top, model, complaints);
   const Rebuild<D> rebuild = [&](const std::string& set, Place place, Diagnostics& wrong) {
     return rebuilt<D>(top, copy_sets, told, set, place, wrong);
   };
-  if (events) {
-    whens<D>(top, roster, bonded, constants, rebuild, world, complaints);
+  // what they name may be missing where a spring, a joint or a force is wrong
+  if (events && complaints.count() == before) {
+    whens<D>(top, roster, sprung, bonded, constants, rebuild, world, complaints);
     constants.refuse_unused();
   }
   if (model.collision == sim::Collision::handout) refuse_beyond_handout(top, D, complaints);

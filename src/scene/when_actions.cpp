@@ -133,30 +133,19 @@ class ActionBuilder {
     return true;
   }
 
-  bool is_spring(const std::string& name) const {
-    const Node* all = names_.top.find("spring");
-    for (std::size_t k = 0; all && k < all->list().size(); ++k) {
-      const Node* its = all->list()[k].find("name");
-      if (its && its->is_text() && its->text() == name) return true;
-    }
-    return false;
-  }
-
   void let_go(const Node& node, const std::string& text, When& when) {
     if (bonded(node.place)) return;
     if (!names_.is_body(text)) {
       Action action{Do::part, "", names_.joints(text)};
-      if (action.of.empty() && is_spring(text)) {
-        complaints_.add(node.place,
-                        "springs stay; a rope or a rod, or a [[force]] that is switched, lets go");
+      if (action.of.empty() && changed_springs(Change::Of::loose, names_.springs_called(text), 1, when))
         return;
-      }
       if (action.of.empty()) {
         std::vector<std::string_view> names;
         for (const Group& group : names_.roster.groups) names.push_back(group.name);
         for (const sim::Joint<D>& joint : model_.joints) names.push_back(joint.name);
-        complaints_.add(node.place, fmt::format("no body or joint is called {}{}", scene::quoted(text),
-                                                did_you_mean(text, names)));
+        for (const NameRange& spring : names_.springs) names.push_back(spring.name);
+        complaints_.add(node.place, fmt::format("no body, joint or spring is called {}{}",
+                                                scene::quoted(text), did_you_mean(text, names)));
         return;
       }
       for (const int joint : action.of) {
@@ -176,8 +165,23 @@ class ActionBuilder {
     if (!action.of.empty()) when.actions.push_back(std::move(action));
   }
 
-  // makes joints of a name, or holds together two sides, one each or each with the one
+  // gives springs a value each; false where there are none
+  bool changed_springs(typename Change::Of of, const std::vector<int>& those, double value, When& when) {
+    Action action{Do::change, "", {}};
+    for (const int spring : those) {
+      Change change;
+      change.of = of, change.index = spring, change.value = value;
+      action.of.push_back(number(std::move(change)));
+    }
+    if (!those.empty()) when.actions.push_back(std::move(action));
+    return !those.empty();
+  }
+
+  // makes joints or joins springs of a name, or holds together two sides, one each or each with the one
   void join(const Node& node, When& when) {
+    if (node.is_text() && names_.joints(node.text()).empty() && !bonded(node.place) &&
+        changed_springs(Change::Of::loose, names_.springs_called(node.text()), 0, when))
+      return;
     if (no_joining(node.place)) return;
     if (node.is_text()) {
       Action action{Do::change, "", {}};
@@ -303,6 +307,9 @@ class ActionBuilder {
     if (bonded(node.place)) return;
     if (const auto body = owner(path, "fixed"); body && names_.is_body(*body))
       return fix(node, *body, *to, when);
+    if (const auto body = owner(path, "mass"); body && names_.is_body(*body))
+      return weigh(node, *body, *to, when);
+    if (spring(node, *to, when)) return;
     const auto steps = scene::path(path);
     const auto at = path.find(".motor");
     const std::string first = path.substr(0, path.find('.'));
@@ -325,8 +332,8 @@ class ActionBuilder {
       if (joint.motor) words.push_back(joint.name);
     complaints_.add(node.place,
                     fmt::format("'set': {} stays as it is while the room runs; events set motors "
-                                "(JOINT.motor.speed), forces (FORCE.components, room.wind), room.gravity and "
-                                "BODY.fixed",
+                                "(JOINT.motor.speed), forces (FORCE.components, room.wind), room.gravity, "
+                                "SPRING.stiffness, damping and rest_length, BODY.fixed and BODY.mass",
                                 scene::quoted(path)));
   }
 
@@ -349,6 +356,47 @@ class ActionBuilder {
       action.of.push_back(number(std::move(change)));
     }
     if (!action.of.empty()) when.actions.push_back(std::move(action));
+  }
+
+  void weigh(const Node& node, const std::string& text, const Node& to, When& when) {
+    const auto made = model_with(node, to);
+    if (!made) return;
+    Action action{Do::change, "", {}};
+    for (const int body : names_.roster.bodies(text, node.place, complaints_)) {
+      const sim::Body<D>& its = model_.bodies[std::size_t(body)];
+      if (its.linked || !moves(body)) {
+        complaints_.add(node.place,
+                        scene::quoted(its.name) + (its.linked ? " is a link of a [[chain]], whose mass stays"
+                                                              : " is fixed, and has no mass"));
+        return;
+      }
+      Change change;
+      change.of = Change::Of::mass, change.index = body, change.value = made->bodies[std::size_t(body)].mass;
+      action.of.push_back(number(std::move(change)));
+    }
+    if (!action.of.empty()) when.actions.push_back(std::move(action));
+  }
+
+  // a key of springs; false: it is another's
+  bool spring(const Node& node, const Node& to, When& when) {
+    struct Key {
+      const char* name;
+      typename Change::Of of;
+      double sim::Spring<D>::*value;
+    };
+    constexpr Key kKeys[] = {{"stiffness", Change::Of::stiffness, &sim::Spring<D>::stiffness},
+                             {"damping", Change::Of::damping, &sim::Spring<D>::damping},
+                             {"rest_length", Change::Of::rest_length, &sim::Spring<D>::rest_length}};
+    for (const Key& key : kKeys) {
+      const auto name = owner(node.text(), key.name);
+      const std::vector<int> those = name ? names_.springs_called(*name) : std::vector<int>();
+      if (those.empty()) continue;
+      const auto made = model_with(node, to);
+      for (const int spring : those)
+        if (made) changed_springs(key.of, {spring}, made->springs[std::size_t(spring)].*key.value, when);
+      return true;
+    }
+    return false;
   }
 
   void motor(const Node& node, const std::string& text, const Node& to, When& when) {
@@ -451,7 +499,7 @@ template <int D>
 void ready_to_let_go(const Node& top, const NameTable& roster, sim::World<D>& world,
                      Diagnostics& complaints) {
   sim::Model<D>& model = world.model;
-  const WhenNames<D> names{top, roster, {}, model, complaints};
+  const WhenNames<D> names{top, roster, {}, {}, model, complaints};
   std::vector<int> held;  // that events fix
   each_action(top, [&](const Node& action) {
     const Node *set = action.find("set"), *to = action.find("to");

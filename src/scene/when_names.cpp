@@ -70,10 +70,26 @@ std::vector<int> WhenNames<D>::joints(const std::string& text) const {
 }
 
 template <int D>
+std::vector<int> WhenNames<D>::springs_called(const std::string& text) const {
+  std::vector<int> found;
+  const auto its = reference(text);
+  for (const NameRange& range : springs) {
+    const int count = range.end - range.first;
+    if (text == range.name) {
+      for (int i = range.first; i < range.end; ++i) found.push_back(i);
+    } else if (its && its->bracketed && its->name == range.name) {
+      if (const auto which = scene::range(its->which, count))
+        for (const int i : *which) found.push_back(range.first + i);
+    }
+  }
+  return found;
+}
+
+template <int D>
 std::string WhenNames<D>::unknown_joint(const std::string& text) const {
   std::vector<std::string_view> names;
   for (const sim::Joint<D>& joint : model.joints) names.push_back(joint.name);
-  for (const BondRange& bond : bonds) names.push_back(bond.name);
+  for (const NameRange& bond : bonds) names.push_back(bond.name);
   return fmt::format("no joint or bond is called {}{}", scene::quoted(text), did_you_mean(text, names));
 }
 

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "scene/bonds.h"
 #include "scene/complaints.h"
 #include "scene/fields.h"
+#include "scene/name_range.h"
 #include "scene/roster.h"
 #include "sim/model/model.h"
 
@@ -16,7 +16,7 @@ template <int D>
 struct WhenNames {
   const Node& top;
   const NameTable& roster;
-  const std::vector<BondRange>& bonds;
+  const std::vector<NameRange>&springs, &bonds;
   const sim::Model<D>& model;
   Diagnostics& complaints;
 
@@ -26,7 +26,9 @@ struct WhenNames {
   std::vector<int> side(const Node& node) const;
   /// Joints of a name: one, those of a list of copies, or all pieces of a rope over wheels.
   std::vector<int> joints(const std::string& text) const;
-  /// What is said where there are none.
+  /// Springs of a name: all of a table's, or one, `band[2]`. None, and no complaint, where there are none.
+  std::vector<int> springs_called(const std::string& text) const;
+  /// What is said where there are no such joints.
   std::string unknown_joint(const std::string& text) const;
 };
 

@@ -7,7 +7,8 @@ namespace obscura::scene {
 
 /// Puts the conditions of [[when]] and the changes that they make into a world, after all else.
 template <int D>
-void whens(const Node& top, const NameTable& roster, const std::vector<BondRange>& bonds,
-           Constants& constants, const Rebuild<D>& rebuild, sim::World<D>& world, Diagnostics& complaints);
+void whens(const Node& top, const NameTable& roster, const std::vector<NameRange>& springs,
+           const std::vector<NameRange>& bonds, Constants& constants, const Rebuild<D>& rebuild,
+           sim::World<D>& world, Diagnostics& complaints);
 
 }  // namespace obscura::scene

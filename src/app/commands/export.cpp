@@ -113,7 +113,7 @@ class Stage {
       it.translations.push_back(narrow(body.position));
       it.rotations.push_back(narrow(body.orientation, it.rotations));
     }
-    for (const auto& spring : now.springs) stretch(glb.nodes[node++], spring.a, spring.b, true);
+    for (const auto& spring : now.springs) stretch(glb.nodes[node++], spring.a, spring.b, !spring.loose);
     for (std::size_t i = 0; i < now.joints.size(); ++i) {
       if (!far(cast_.joints[i])) continue;
       const bool whole = !now.joints[i].broken;

@@ -152,7 +152,11 @@ FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::str
       throw UsageError(fmt::format("{}: {:.0f} exposures are more than {}, the most a panel has", scene.file,
                                    sim::value(times.back()) / sim::value(*every_), kMostExposures));
     take(scene, times, said);
-    variants_.push_back({scene, variants.keys.empty() ? "" : Variation::spoken(variants[run].back())});
+    const std::vector<std::string>& titles = figure.titles;
+    const bool entitled = !figure.room && std::size_t(run) < titles.size();
+    variants_.push_back({scene, entitled                 ? titles[std::size_t(run)]
+                                : variants.keys.empty() ? ""
+                                                        : '"' + Variation::spoken(variants[run].back()) + '"'});
   }
   const int n = int(panels_.size()) *
                 (panels_.front().cast.dimension == 3 ? int(panels_.front().scene.cameras.size()) : 1);
@@ -330,7 +334,7 @@ std::vector<draw::Plot> FigureBuilder::plots() const {
     for (std::size_t i = 0; i < all.size(); ++i) {
       for (draw::Series line : own[i].lines) {
         const std::string what = own[i].lines.size() > 1 ? line.label + " " : "";
-        line.label = what + "\"" + variants_[v].name + "\"";
+        line.label = what + variants_[v].name;
         const auto told = draw::color(kTold[all[i].lines.size() % kTold.size()]);
         line.color = told ? draw::mix(*told, ink, 0.2) : ink;
         line.weight = 1;

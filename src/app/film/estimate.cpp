@@ -94,7 +94,8 @@ class Outlines {
     double sum = 0;
     for (int i = 0; i < int(now.bodies.size()); ++i) sum += 6 * reach_[std::size_t(i)] * scale_ * speed(i);
     for (const sim::Snapshot::Spring& spring : now.springs)
-      sum += (spring.b - spring.a).norm() * scale_ * std::max(speed(spring.holds_a), speed(spring.holds_b));
+      if (!spring.loose)
+        sum += (spring.b - spring.a).norm() * scale_ * std::max(speed(spring.holds_a), speed(spring.holds_b));
     return sum;
   }
 

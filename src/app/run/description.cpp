@@ -149,7 +149,8 @@ void Account::read(const sim::Snapshot& now) {
     const auto pushed = [&](int body) -> sim::Vec3 {
       if (body < 0 || cast_.bodies[std::size_t(body)].fixed) return sim::Vec3::Zero();
       const sim::Snapshot::Body& it = last_->bodies[std::size_t(body)];
-      return last_->gravity.value_or(cast_.gravity) + (it.field + it.drag + it.blast) / cast_.bodies[std::size_t(body)].mass;
+      return last_->gravity.value_or(cast_.gravity) +
+             (it.field + it.drag + it.blast) / sim::mass(cast_, *last_, body);
     };
     const auto way = [&](int body) -> sim::Vec3 {
       if (body < 0) return sim::Vec3::Zero();

@@ -64,6 +64,7 @@ double Notes::bare(const Point& tail, const Point& tip) {
   constexpr int kPieces = 64;
   const Point u = (tip - tail).normalized();
   for (const sim::Snapshot::Spring& spring : now_.springs) {
+    if (spring.loose) continue;
     const Point a = view_.page(spring.a), b = view_.page(spring.b), way = b - a;
     if (!(way.norm() > 0) || std::abs(way.normalized().dot(u)) < 0.9) continue;
     const auto off = [&](const Point& p) {

@@ -98,6 +98,7 @@ void Notes::avoid_bodies() {
 
 void Notes::avoid_springs() {
   for (const sim::Snapshot::Spring& spring : now_.springs) {
+    if (spring.loose) continue;
     const Point a = view_.page(spring.a), b = view_.page(spring.b), u = (b - a).normalized();
     for (const double side : {-3.0, 0.0, 3.0})
       placing_.avoid(a + side * point_ * Point(-u.y(), u.x()), b + side * point_ * Point(-u.y(), u.x()), 1);
@@ -241,7 +242,8 @@ void Notes::avoid_areas() {
                        view_.page(at) + Point(half, -up * half / 2), 4);
   };
   for (std::size_t i = 0; i < cast_.springs.size(); ++i)
-    bracket(cast_.springs[i].a, now_.springs[i].a), bracket(cast_.springs[i].b, now_.springs[i].b);
+    if (!now_.springs[i].loose)
+      bracket(cast_.springs[i].a, now_.springs[i].a), bracket(cast_.springs[i].b, now_.springs[i].b);
   for (std::size_t i = 0; i < cast_.joints.size(); ++i)
     if (cast_.joints[i].places.empty() && !now_.joints[i].broken)
       bracket(cast_.joints[i].a, now_.joints[i].a), bracket(cast_.joints[i].b, now_.joints[i].b);

@@ -22,7 +22,7 @@ const sim::Snapshot::Body& of(Now now, int body) {
 const sim::Snapshot::Spring& spring(Now now, int body) {
   static const sim::Snapshot::Spring none;
   for (const sim::Snapshot::Spring& each : now.springs)
-    if (body >= 0 && (each.holds_a == body || each.holds_b == body)) return each;
+    if (body >= 0 && !each.loose && (each.holds_a == body || each.holds_b == body)) return each;
   return none;
 }
 

@@ -64,13 +64,13 @@ std::vector<Reading> pulls(const sim::SceneInfo& cast, const sim::Snapshot& now,
   std::vector<Reading> found;
   for (std::size_t i = 0; i < cast.springs.size(); ++i) {
     const sim::SceneInfo::Spring& spring = cast.springs[i];
-    if (spring.a != body && spring.b != body) continue;
+    if ((spring.a != body && spring.b != body) || now.springs[i].loose) continue;
     const bool at_a = spring.a == body;
     const Vec3 here = at_a ? now.springs[i].a : now.springs[i].b,
                there = at_a ? now.springs[i].b : now.springs[i].a;
     const Vec3 way = there - here;
     if (!(way.norm() > 0)) continue;
-    const Vec3 stretch = spring.stiffness * (way.norm() - spring.rest_length) * way.normalized();
+    const Vec3 stretch = -now.springs[i].push * way.normalized();
     found.push_back({here, damping ? Vec3((at_a ? 1 : -1) * now.springs[i].force) : stretch, 0, int(i)});
   }
   return found;
@@ -118,7 +118,8 @@ Vec3 net_force(const sim::SceneInfo& cast, const sim::Snapshot& now, int body) {
   const sim::SceneInfo::Body& its = cast.bodies[std::size_t(body)];
   if (its.fixed) return Vec3::Zero();
   const sim::Snapshot::Body& it = now.bodies[std::size_t(body)];
-  Vec3 sum = its.mass * now.gravity.value_or(cast.gravity) + it.drag + it.field + it.blast + it.held;
+  Vec3 sum = sim::mass(cast, now, body) * now.gravity.value_or(cast.gravity) + it.drag + it.field + it.blast +
+             it.held;
   sum += total(touches(now, body, Quantity::contact)) + total(pulls(cast, now, body, true));
   for (const sim::Snapshot::Mouse& mouse : now.mice)
     if (mouse.body == body) sum += mouse.force;
@@ -138,17 +139,16 @@ std::vector<Reading> readings(const Marks::Vector& vector, const sim::SceneInfo&
   }
   if (vector.body < 0) return {};
   const sim::Snapshot::Body& body = now.bodies[std::size_t(vector.body)];
-  const sim::SceneInfo::Body& its = cast.bodies[std::size_t(vector.body)];
   const Vec3 at = vector.at ? place(*vector.at, now) : body.position;
   switch (vector.quantity) {
     case Quantity::velocity:
       return {{at, velocity_at(now, vector.body, at)}};
     case Quantity::acceleration:
-      return {{at, net_force(cast, now, vector.body) / its.mass}};
+      return {{at, net_force(cast, now, vector.body) / sim::mass(cast, now, vector.body)}};
     case Quantity::momentum:
-      return {{at, its.mass * body.velocity}};
+      return {{at, sim::mass(cast, now, vector.body) * body.velocity}};
     case Quantity::weight:
-      return {{at, its.mass * now.gravity.value_or(cast.gravity)}};
+      return {{at, sim::mass(cast, now, vector.body) * now.gravity.value_or(cast.gravity)}};
     case Quantity::net_force:
       return {{at, net_force(cast, now, vector.body)}};
     case Quantity::drag:

@@ -10,7 +10,7 @@ std::optional<sim::Vec3> followed(const Camera& camera, const sim::SceneInfo& ca
   sim::Vec3 sum = sim::Vec3::Zero();
   double mass = 0;
   for (const int body : those) {
-    const double m = cast.bodies[std::size_t(body)].mass;
+    const double m = sim::mass(cast, now, body);
     sum += m * now.bodies[std::size_t(body)].position, mass += m;
   }
   return sim::Vec3(sum / mass);

@@ -29,7 +29,8 @@ std::vector<RopeLine> rope_lines(const sim::SceneInfo::Joint& joint, const sim::
   const std::size_t n = joint.places.size();
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const Vec3 p = place_of(now, joint.places[i]), q = place_of(now, joint.places[i + 1]);
-    const double a = i == 0 ? joint.offset_a : 0, b = i + 2 == n ? joint.offset_b : 0;
+    const auto inner = [&](std::size_t k) { return joint.around.empty() ? 0 : joint.around[k - 1]; };
+    const double a = i == 0 ? joint.offset_a : inner(i), b = i + 2 == n ? joint.offset_b : inner(i + 1);
     if (a == 0 && b == 0) {
       const double far = (q - p).norm();
       all.push_back({p, q, far > 0 ? Vec3((q - p) / far) : Vec3(Vec3::UnitX())});
@@ -54,6 +55,23 @@ OnWheel leaving(const sim::SceneInfo::Joint& joint, bool at_a, const sim::Snapsh
   return at_a ? OnWheel{lines.front().along, joint.offset_a} : OnWheel{-lines.back().along, -joint.offset_b};
 }
 
+/// The arc of a rope around a wheel, from where it comes along `before` to just before it goes along `after`.
+std::vector<Vec3> arc_between(const Vec3& before, const Vec3& after, double offset, int rounds,
+                              const Vec3& center) {
+  constexpr double kRound = 2 * std::numbers::pi;
+  double turn = std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
+  if (turn != 0 && (turn > 0) != (offset > 0)) turn += offset > 0 ? kRound : -kRound;
+  turn += (offset > 0 ? kRound : -kRound) * rounds;
+  const int steps = std::max(1, int(std::ceil(std::fabs(turn) / kArc)));
+  std::vector<Vec3> arc;
+  for (int n = 0; n < steps; ++n) {
+    const double s = std::sin(turn * n / steps), c = std::cos(turn * n / steps);
+    const Vec3 d(c * before.x() - s * before.y(), s * before.x() + c * before.y(), 0);
+    arc.push_back(center + offset * Vec3(d.y(), -d.x(), 0));
+  }
+  return arc;
+}
+
 /// The arc of a rope's piece on the wheel at its a or its b, from where the piece before it in the list comes
 /// to that wheel to where this one leaves it; nothing where there is no such piece, or it has broken.
 std::vector<Vec3> arc_on_wheel(const sim::SceneInfo& cast, std::size_t i, bool at_a,
@@ -71,18 +89,8 @@ std::vector<Vec3> arc_on_wheel(const sim::SceneInfo& cast, std::size_t i, bool a
           (its_a ? other.places.front() : other.places.back()).body != wheel)
         continue;
       const Vec3 before = -leaving(other, its_a, now).along, along = after.along;
-      double turn = std::atan2(before.x() * along.y() - before.y() * along.x(), before.dot(along));
-      if (turn != 0 && (turn > 0) != (after.offset > 0))
-        turn += (after.offset > 0 ? 2 : -2) * std::numbers::pi;
-      const Vec3 center = place_of(now, at_a ? joint.places.front() : joint.places.back());
-      const int steps = std::max(1, int(std::ceil(std::fabs(turn) / kArc)));
-      std::vector<Vec3> arc;
-      for (int n = 0; n < steps; ++n) {
-        const double s = std::sin(turn * n / steps), c = std::cos(turn * n / steps);
-        const Vec3 d(c * before.x() - s * before.y(), s * before.x() + c * before.y(), 0);
-        arc.push_back(center + after.offset * Vec3(d.y(), -d.x(), 0));
-      }
-      return arc;
+      return arc_between(before, along, after.offset, 0,
+                         place_of(now, at_a ? joint.places.front() : joint.places.back()));
     }
   }
   return {};
@@ -125,6 +133,10 @@ std::vector<Vec3> rope_way(const sim::SceneInfo& cast, std::size_t i, const sim:
   std::vector<Vec3> way;
   for (std::size_t k = 0; k < lines.size(); ++k) {
     const RopeLine& line = lines[k];
+    if (k > 0 && !joint.around.empty() && joint.around[k - 1] != 0)
+      for (const Vec3& point : arc_between(lines[k - 1].along, line.along, joint.around[k - 1], joint.rounds,
+                                           place_of(now, joint.places[k])))
+        way.push_back(point);
     const double length = (line.to - line.from).norm(), slack = now.joints[i].slack;
     if (k == loose && slack > kLoose * length) {
       for (const Vec3& point : hanging_rope(line.from, line.to, down, length + slack)) way.push_back(point);

@@ -181,7 +181,7 @@ void draw_brackets(const Stage& stage, const View& view, const sim::Snapshot& no
   std::vector<Point> hatched;
   for (std::size_t i = 0; i < now.springs.size(); ++i) {
     const sim::SceneInfo::Spring& spring = stage.cast.springs[i];
-    if ((spring.a < 0) == (spring.b < 0)) continue;
+    if (now.springs[i].loose || (spring.a < 0) == (spring.b < 0)) continue;
     const bool first = spring.a < 0;
     draw_bracket(stage, view, now, walls, view.page(first ? now.springs[i].a : now.springs[i].b),
                  made_fast(stage, first ? spring.start : Vec3(-spring.start), true),
@@ -369,8 +369,11 @@ void draw_pulleys(const Stage& stage, const View& view, const sim::Snapshot& now
     list.add(nodes, Cap::round);
     // made fast to the room or to a body, or led around a point of one
     for (const sim::SceneInfo::Joint::Place& at : joint.places) {
-      const bool wheel = (&at == &joint.places.front() && joint.offset_a != 0) ||
-                         (&at == &joint.places.back() && joint.offset_b != 0);
+      const std::size_t k = std::size_t(&at - joint.places.data());
+      const bool inner = k > 0 && k + 1 < joint.places.size() && !joint.around.empty();
+      const bool wheel = (k == 0 && joint.offset_a != 0) ||
+                         (k + 1 == joint.places.size() && joint.offset_b != 0) ||
+                         (inner && joint.around[k - 1] != 0);
       if (wheel || (at.body >= 0 && !stage.solid(at.body))) continue;
       list.add(Disc{view.page(place_of(now, at)), (at.body < 0 ? kPin : kJoint) * weight, 0, color, color});
     }

@@ -90,7 +90,7 @@ void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now
   const double zoom = view.scale / stage.layout.scale, weight = stage.layout.weight;
   std::vector<Node> nodes;
   for (std::size_t i = 0; i < now.springs.size(); ++i) {
-    if (holds_solid(stage, stage.cast.springs[i]) != solids) continue;
+    if (now.springs[i].loose || holds_solid(stage, stage.cast.springs[i]) != solids) continue;
     const Point a = view.page(now.springs[i].a), b = view.page(now.springs[i].b);
     const Coil& form = stage.coils[i];
     nodes.clear();
@@ -115,7 +115,7 @@ void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now
   };
   for (std::size_t i = 0; i < now.springs.size(); ++i) {
     const sim::SceneInfo::Spring& spring = stage.cast.springs[i];
-    if (holds_solid(stage, spring) != solids) continue;
+    if (now.springs[i].loose || holds_solid(stage, spring) != solids) continue;
     list.of({Subject::What::spring, int(i)});
     joint(spring.a, view.page(now.springs[i].a), stage.coils[i]);
     joint(spring.b, view.page(now.springs[i].b), stage.coils[i]);

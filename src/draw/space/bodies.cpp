@@ -389,7 +389,7 @@ void add_brackets(SpaceFrame& s) {
   };
   for (std::size_t i = 0; i < cast.springs.size() && i < s.now.springs.size(); ++i) {
     const sim::SceneInfo::Spring& spring = cast.springs[i];
-    if ((spring.a < 0) != (spring.b < 0))
+    if (!s.now.springs[i].loose && (spring.a < 0) != (spring.b < 0))
       add(spring.a < 0 ? s.now.springs[i].a : s.now.springs[i].b, spring.a < 0 ? spring.b : spring.a);
   }
   for (std::size_t i = 0; i < cast.joints.size() && i < s.now.joints.size(); ++i) {

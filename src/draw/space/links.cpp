@@ -96,6 +96,7 @@ void add_links(SpaceFrame& s) {
   };
   for (std::size_t i = 0; i < s.now.springs.size() && i < cast.springs.size(); ++i, ++number) {
     const auto& at = s.now.springs[i];
+    if (at.loose) continue;
     add_coil(s, s.stage.coils[i], at.a, at.b, number);
     const double joint = (s.stage.coils[i].turns == 0 ? 0.75 : 1) * kJoint;
     knob(cast.springs[i].a, at.a, joint);

@@ -100,6 +100,7 @@ std::vector<std::uint64_t> words(const State<D>& state) {
     const auto rounds = [](double angle) { return std::llround(angle / (2 * std::numbers::pi)); };
     const std::int64_t a = rounds(state.wound[i].a), b = rounds(state.wound[i].b);
     if (a != 0 || b != 0) w.integer(std::int64_t(i)), w.integer(a), w.integer(b);
+    if (state.wound[i].drag != 0) w.number(state.wound[i].drag);
   }
   for (const Made<D>& it : state.made) {
     w.template numbers<D>(it.place);

@@ -100,6 +100,7 @@ struct Spring {
   double rest_length = 0;  // m
   double stiffness = 0;    // k, N/m
   double damping = 0;      // c, N s/m
+  bool loose = false;      // it holds nothing: an event has let it go, or will join it
 };
 
 /// The kinds of joint, by the relative motions of two ends that they forbid. Numbers of rows: weld D +
@@ -157,7 +158,7 @@ struct Joint {
   std::optional<Motor> motor;
   std::optional<Coil> coil;
   double friction = 0;    // dry: the largest torque (N m) of a hinge or force (N) of a slider; of a wire
-                          // Coulomb's mu
+                          // or the rope of a pulley Coulomb's mu
   double breaks = 1e300;  // N: a larger force on the joint breaks it
   double breaks_torque = 1e300;  // N m: so does a larger torque, about the place of a
   bool touching = false;         // whether the two bodies may touch each other
@@ -167,8 +168,12 @@ struct Joint {
   // a pulley: the points that its rope slides over, from a to b. A gear: the ends of its second joint
   std::vector<End<D>> over;
   Winding<D> on_a, on_b;  // a pulley in the plane: wheels about its ends, which its rope runs onto
-  int rope = -1;          // a pulley: its number; those of one rope have the same, and break together
-  double ratio = 1;       // a gear: of the first joint's coordinate, and the second's; a screw: m a radian
+  std::vector<double>
+      around;           // a pulley with friction: as Winding::offset, of each that its rope slides over
+  double wrap = 0;      // its: the angle of the rope on those that are wheels, at the start, rad
+  int whole_turns = 0;  // its: those of that around each
+  int rope = -1;        // a pulley: its number; those of one rope have the same, and break together
+  double ratio = 1;     // a gear: of the first joint's coordinate, and the second's; a screw: m a radian
   std::shared_ptr<const std::array<Joint, 2>> geared;  // and both
   std::shared_ptr<const Curve<D>> curve;               // a wire: in b's frame; for the room, in the room
   bool lets_go = false;                                // a wire: at its open ends, where others stop
@@ -340,10 +345,12 @@ struct Articulation {
 /// A change of the room that an event makes, for the rest of the run.
 template <int D>
 struct Change {
-  enum class Of { hold, motor, gravity, force, join };
+  enum class Of { hold, motor, gravity, force, join, loose, stiffness, damping, rest_length, mass };
   Of of = Of::hold;
-  // of the body that is held where it is, the joint that gets a motor or is made, or the force
+  // of the body that is held where it is or changes its mass, the joint that gets a motor or is made, the
+  // force, or the spring
   int index = -1;
+  double value = 0;  // of a spring, SI units, loose or not; of a body, kg: its inertia goes with it
   typename Joint<D>::Motor motor;
   Vec<D> gravity = Vec<D>::Zero();
   std::shared_ptr<const Force<D>> force;

@@ -63,7 +63,9 @@ struct SceneInfo {
                                      // ends of both joints
     // of a pulley: the wheels at its ends, as sim::Winding has them; of a gear: its pitch circles
     double offset_a = 0, offset_b = 0;
-    int rope = 0;  // of a pulley: pieces of one rope have the same number
+    std::vector<double> around = {};  // of a pulley with friction: those of what its rope slides over
+    int rounds = 0;                   // its: whole turns more around each
+    int rope = 0;                     // of a pulley: pieces of one rope have the same number
     Vec3 tooth_a = Vec3::UnitX(), tooth_b = Vec3::UnitX();  // of a gear, in the bodies' frames
     Vec3 start = Vec3::Zero();                              // from its a to its b at the start of the run, m
   };
@@ -117,6 +119,7 @@ struct Snapshot {
     int holds_a = -1, holds_b = -1;           // bodies; -1: the room
     double push = 0;                          // of its stiffness, N; negative: it pulls
     Vec3 force = Vec3::Zero();                // on its a, with its damping, N
+    bool loose = false;                       // it holds nothing
   };
   struct Mouse {
     bool pressed = false;
@@ -160,10 +163,14 @@ struct Snapshot {
   std::vector<Joint> joints;
   std::vector<Contact> contacts;
   Energies energies;
+  std::vector<double> masses = {};       // of bodies now, kg; none: as at the start
   std::optional<Vec3> gravity = {};      // of the room now, m/s^2; none: as at the start
   Vec3 momentum = Vec3::Zero();          // kg m/s
   Vec3 angular_momentum = Vec3::Zero();  // about the origin, kg m^2/s; in the plane (0, 0, L)
 };
+
+/// The mass of a body now, kg.
+double mass(const SceneInfo& cast, const Snapshot& now, int body);
 
 /// Coulomb's mu between the two that touch, as they slip or not.
 double friction(const SceneInfo& cast, const Snapshot::Contact& contact);

@@ -108,9 +108,10 @@ struct EventLog {
 };
 
 /// How far the rope of a pulley has turned at the wheels at its ends since the start, rad, all rounds
-/// counted.
+/// counted. Of one with friction: its first and last pieces; and what friction takes of its tension.
 struct Wound {
   double a = 0, b = 0;
+  double drag = 0;  // N: the tension at a less that at b
 
   bool operator==(const Wound&) const = default;
 };
@@ -147,7 +148,7 @@ struct State {
   std::vector<char> released;  // one a drive: whether its body has been let go
   EventLog events;             // of a model with conditions
   std::vector<int> on_piece;   // of a model with wires one a joint: the piece of the wire that its a is on
-  std::vector<Wound> wound;    // of a model with ropes on wheels one a joint
+  std::vector<Wound> wound;    // of a model with ropes on wheels, or with friction, one a joint
   std::vector<Made<D>> made;   // of a model whose events make joints one a joint
 
   // bonded bodies (sim/step/bonded_bodies.h): then all above describes the parts, and `bonded` is stepped

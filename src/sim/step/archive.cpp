@@ -44,7 +44,7 @@ void fields(Visit& visit, Happening& it) {
 }
 template <class Visit>
 void fields(Visit& visit, Wound& it) {
-  visit(it.a), visit(it.b);
+  visit(it.a), visit(it.b), visit(it.drag);
 }
 template <class Visit, int D>
 void fields(Visit& visit, Made<D>& it) {
@@ -211,7 +211,8 @@ bool fits(const State<D>& state, const Model<D>& model) {
   good = good && sized(state.made, joints);
   for (const Made<D>& it : state.made)
     good = good && it.place.allFinite() && it.turn.allFinite() && std::isfinite(it.length);
-  for (const Wound& it : state.wound) good = good && std::isfinite(it.a) && std::isfinite(it.b);
+  for (const Wound& it : state.wound)
+    good = good && std::isfinite(it.a) && std::isfinite(it.b) && std::isfinite(it.drag);
   for (const Contact<D>& contact : state.contacts) {
     good = good && body(contact.key.a) && (body(contact.key.b) || wall(-1 - contact.key.b)) &&
            contact.touching <= ContactMode::slide;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "sim/constraint/row.h"
 #include "sim/step/events.h"
 
 namespace obscura::sim {
@@ -73,6 +74,20 @@ void Events<D>::find_breaks(const State<D>& state, int w, double from, double to
 // spans_ of a pair in the course at hand
 template <int D>
 void Events<D>::spans(const State<D>& state, std::pair<int, int> pair, bool touched, double from, double to) {
+  meet(state, pair, touched, from, to);
+  if (!touched || !iterates_ || to < 1) return;
+  // what touched, and bears again within the step, was not away
+  if (!spans_.empty()) spans_.front().begun = from;
+  if ((!spans_.empty() && to - spans_.back().ended <= kSameInstant) || !returns(state, pair)) return;
+  if (spans_.empty())
+    spans_.push_back({from, to});
+  else
+    spans_.back().ended = to;
+}
+
+// spans_ as they are told
+template <int D>
+void Events<D>::meet(const State<D>& state, std::pair<int, int> pair, bool touched, double from, double to) {
   spans_.clear();
   const double h = step_length(model_.rate);
   const auto before = [](const auto& it, std::pair<int, int> of) { return std::pair(it.a, it.b) < of; };
@@ -122,6 +137,33 @@ void Events<D>::spans(const State<D>& state, std::pair<int, int> pair, bool touc
   if (!touched && first.begun - from <= kSameInstant && first.ended > first.begun &&
       first.ended - first.begun < kLettingGo)
     spans_.erase(spans_.begin());
+}
+
+// Whether two that touched, and bear nothing at the end of a step, do so only because a step is straight
+// where their way is curved: gravity closes the gap again within a step, v_n + g_n h < 0, and it is as small
+// as that makes it, |g_n| h^2.
+template <int D>
+bool Events<D>::returns(const State<D>& state, std::pair<int, int> pair) {
+  const Model<D>& model = stepper_->model(state);
+  const double h = step_length(model.rate);
+  const auto [a, b] = pair;
+  const BodyMotion<D> one = body_motion(state, a), other = b < 0 ? BodyMotion<D>() : body_motion(state, b);
+  std::vector<ContactCandidate<D>> near;
+  const double margin = std::sqrt(model.gravity.squaredNorm()) * h * h;
+  const Body<D>& its = model.bodies[std::size_t(a)];
+  if (b < 0)
+    collide(a, its.shape, one, -1 - b, model.walls[std::size_t(-1 - b)], margin, near);
+  else
+    collide(a, its.shape, one, b, model.bodies[std::size_t(b)].shape, other, margin, near);
+  const double falls = (its.fixed ? 0 : 1) - (b < 0 || model.bodies[std::size_t(b)].fixed ? 0 : 1);
+  return std::any_of(near.begin(), near.end(), [&](const ContactCandidate<D>& gap) {
+    Row<D> J[D];
+    const EvaluatedContact<D> now = rows(gap, one, other, J);
+    const double speed =
+        J[0].along.dot(one.v - other.v) + J[0].angular_a.dot(one.w) - J[0].angular_b.dot(other.w);
+    const double pull = falls * J[0].along.dot(model.gravity) + J[0].velocity_product;
+    return pull < 0 && speed + pull * h < 0 && now.value <= -pull * h * h;
+  });
 }
 
 template <int D>

@@ -22,6 +22,19 @@ constexpr int kMostCuts = 1000;     // of a step
 constexpr std::size_t kMostHappenings = 100'000;
 constexpr double kTouchingGap = 1e-9;  // of the room's height: what touches at the start
 
+// gives a body another mass, and moments of inertia in proportion
+template <int D>
+void weigh(Model<D>& model, int body, double mass) {
+  Body<D>& its = model.bodies[std::size_t(body)];
+  its.inertia *= mass / its.mass;
+  its.mass = mass;
+  for (Force<D>& force : model.forces) {
+    for (Subject<D>& subject : force.subjects)
+      if (subject.body == body) subject.mass = mass;
+    if (force.center && force.center->body == body) force.center->mass = mass;
+  }
+}
+
 }  // namespace
 
 template <int D>
@@ -115,11 +128,32 @@ void Events<D>::make(const State<D>& state) {
       case Change<D>::Of::join:
         join_as(now_.joints[std::size_t(change.index)], state.made[std::size_t(change.index)]);
         break;
+      case Change<D>::Of::loose:
+        now_.springs[std::size_t(change.index)].loose = change.value != 0;
+        break;
+      case Change<D>::Of::stiffness:
+        now_.springs[std::size_t(change.index)].stiffness = change.value;
+        break;
+      case Change<D>::Of::damping:
+        now_.springs[std::size_t(change.index)].damping = change.value;
+        break;
+      case Change<D>::Of::rest_length:
+        now_.springs[std::size_t(change.index)].rest_length = change.value;
+        break;
+      case Change<D>::Of::mass:
+        break;  // below: forces have masses, too
     }
+  }
+  for (Spring<D>& spring : now_.springs)
+    if (spring.loose) spring.stiffness = spring.damping = 0;
+  for (const int number : made_changes_) {
+    const Change<D>& change = model_.changes[std::size_t(number)];
+    if (change.of == Change<D>::Of::mass) weigh(now_, change.index, change.value);
   }
   probes_ =
       model_.bonds.empty() && (now_.collision == Collision::event ||
                                (now_.collision == Collision::contact && solver(now_) == Solver::direct));
+  iterates_ = now_.collision == Collision::contact && solver(now_) == Solver::iterative;
   stepper_ = std::make_unique<Stepper<D>>(now_);
   stepper_->watch(&course_);
 }
@@ -359,6 +393,7 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
         }
         case Action::Do::part:
           if (std::size_t(of) < state.broken.size()) state.broken[std::size_t(of)] = 1;
+          known_broken(state, of, true);
           std::erase_if(changes, [&](int c) {
             const Change<D>& it = model_.changes[std::size_t(c)];
             return it.of == Change<D>::Of::join && it.index == of;
@@ -372,9 +407,9 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
           changes.push_back(of);
           if (joins) {
             const auto joint = std::size_t(made.index);
-            state.made[joint] = as_it_stands(model_.joints[joint], state), state.broken[joint] = 0;
+            state.made[joint] = as_it_stands(model_.joints[joint], state, joint), state.broken[joint] = 0;
             joined = true;
-            not_broken(state, made.index);
+            known_broken(state, made.index, false);
           }
           if (made.of != Change<D>::Of::hold) break;
           state.v[std::size_t(made.index)].setZero();
@@ -396,13 +431,13 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
   if (joined) jerk(state, at.fraction, t);
 }
 
-// a joint holds from now on, and may break again
+// a joint holds from now on, and may break again; or has been let go, which is no break
 template <int D>
-void Events<D>::not_broken(State<D>& state, int joint) {
+void Events<D>::known_broken(State<D>& state, int joint, bool broken) {
   for (int w = 0; w < int(model_.whens.size()); ++w) {
     const When<D>& when = model_.whens[std::size_t(w)];
     for (int k = 0; when.on == On::breaks && k < when.things(); ++k)
-      if (when.those[std::size_t(k)] == joint) state.events.on[std::size_t(slot(w, k))] = 0;
+      if (when.those[std::size_t(k)] == joint) state.events.on[std::size_t(slot(w, k))] = broken;
   }
 }
 

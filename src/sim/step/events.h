@@ -87,6 +87,8 @@ class Events {
   void find_values(const State<D>& state, int when, double from, double to);
   void find_breaks(const State<D>& state, int when, double from, double to);
   void spans(const State<D>& state, std::pair<int, int> pair, bool touched, double from, double to);
+  void meet(const State<D>& state, std::pair<int, int> pair, bool touched, double from, double to);
+  bool returns(const State<D>& state, std::pair<int, int> pair);
   Instant<D> pose_at(const State<D>& state, int body, double from, double to, double at, double inside) const;
   void stretches(const std::vector<int>& bodies, double from, double to);
 
@@ -113,13 +115,14 @@ class Events {
     int which;
   };
   void change(State<D>& state, const std::vector<Due>& actions, TimeStamp at);
-  void not_broken(State<D>& state, int joint);
+  void known_broken(State<D>& state, int joint, bool broken);
   void jerk(State<D>& state, double fraction, double t);
   void note_truths(State<D>& state, double from, double to);
 
   const Model<D>& model_;
   bool exact_ = false;                   // under `event`
   bool probes_ = false;                  // by the exact solver, without bonds
+  bool iterates_ = false;                // by the iterative solver
   std::vector<int> slots_;               // of each condition, its first in EventLog::on
   std::vector<Evaluation> evaluations_;  // of values, in the order of the conditions
   std::vector<int> evaluation_of_;

@@ -86,6 +86,7 @@ Solver solver(const Model<D>& model) {
   if (!model.chains.empty()) return Solver::direct;                     // links are sides of its rows alone
   if (!model.rails.empty() || has_wires(model)) return Solver::direct;  // curves are its alone
   if (model.solver != Solver::automatic) return model.solver;
+  if (has_rubbing_ropes(model)) return Solver::direct;
   if (has_static_friction(model)) return Solver::direct;  // alike
   return body_counts(model).template few<D>() ? Solver::direct : Solver::iterative;
 }

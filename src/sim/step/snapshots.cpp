@@ -7,6 +7,7 @@
 
 #include "sim/collide/rails.h"
 #include "sim/constraint/joints/joint.h"
+#include "sim/constraint/joints/pulley.h"
 #include "sim/constraint/material.h"
 #include "sim/energy/energy.h"
 #include "sim/force/explosion.h"
@@ -175,12 +176,13 @@ void hold(const Model<D>& model, const State<D>& state, Snapshot& now) {
     const Wrench<D> unit = load_on_a(joint, row[0], at(joint.a.body), at(joint.b.body));
     const double size = unit.f.squaredNorm() + unit.n.squaredNorm();
     if (!(size > 0)) continue;
-    const double f = (unit.f.dot(on_a.f) + unit.n.dot(on_a.n)) / size;
-    each_side(row[0], [&](int body, const Vec<D>& along, const AngularVec<D>& angular) {
-      push(body, Wrench<D>{angular, along} * f);
+    const double drag = wound(state, i).drag;
+    const double f = (unit.f.dot(on_a.f) + unit.n.dot(on_a.n)) / size - drag / 2;
+    const auto holds = [&](double force, int body, const Vec<D>& along, const AngularVec<D>& angular) {
+      push(body, Wrench<D>{angular, along} * force);
       // where it holds it: the end about whose place it turns it least
       Snapshot::Joint::Hold held;
-      held.body = body, held.place = to_3d<D>(state.x[body]), held.force = to_3d<D>(Vec<D>(f * along));
+      held.body = body, held.place = to_3d<D>(state.x[body]), held.force = to_3d<D>(Vec<D>(force * along));
       double least = 1e300;
       const auto end = [&](const End<D>& it) {
         if (it.body != body) return;
@@ -188,7 +190,7 @@ void hold(const Model<D>& model, const State<D>& state, Snapshot& now) {
         const AngularVec<D> rest = angular - moment<D>(Vec<D>(point - state.x[body]), along);
         if (rest.squaredNorm() >= least) return;
         least = rest.squaredNorm();
-        held.place = to_3d<D>(point), held.torque = turning_3d<D>(AngularVec<D>(f * rest));
+        held.place = to_3d<D>(point), held.torque = turning_3d<D>(AngularVec<D>(force * rest));
       };
       end(joint.a), end(joint.b);
       for (const End<D>& it : joint.over) end(it);
@@ -205,6 +207,14 @@ void hold(const Model<D>& model, const State<D>& state, Snapshot& now) {
         return;
       }
       now.joints[i].holds.push_back(held);
+    };
+    each_side(row[0], [&](int body, const Vec<D>& along, const AngularVec<D>& angular) {
+      holds(f, body, along, angular);
+    });
+    if (drag == 0) continue;
+    hold_drag<D>({joint, at(joint.a.body), at(joint.b.body), turn, motions, wound(state, i)}, row[0]);
+    each_side(row[0], [&](int body, const Vec<D>& along, const AngularVec<D>& angular) {
+      holds(drag, body, along, angular);
     });
   }
 }
@@ -218,6 +228,10 @@ Vec<D> velocity(const State<D>& state, const End<D>& end) {
 }
 
 }  // namespace
+
+double mass(const SceneInfo& cast, const Snapshot& now, int body) {
+  return now.masses.empty() ? cast.bodies[std::size_t(body)].mass : now.masses[std::size_t(body)];
+}
 
 double friction(const SceneInfo& cast, const Snapshot::Contact& contact) {
   const auto of = [&](const auto& it) { return contact.sliding ? it.friction : it.static_friction; };
@@ -283,6 +297,7 @@ SceneInfo cast(const Model<D>& model, const State<D>& start, const std::vector<P
     for (const End<D>& end : j.over) add(end);
     if (!gear) add(j.b);
     it.offset_a = j.on_a.offset, it.offset_b = j.on_b.offset, it.rope = j.rope;
+    it.around = j.around, it.rounds = j.whole_turns;
     it.tooth_a = to_3d<D>(j.on_a.start), it.tooth_b = to_3d<D>(j.on_b.start);
   }
   for (std::size_t i = 0; i < model.mice.size(); ++i) {
@@ -306,6 +321,9 @@ Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>
   now.gravity = to_3d<D>(stepper.model(state).gravity);
   now.time = t;
   now.step = state.step;
+  if (std::any_of(scene.changes.begin(), scene.changes.end(),
+                  [](const Change<D>& it) { return it.of == Change<D>::Of::mass; }))
+    for (const Body<D>& body : model.bodies) now.masses.push_back(body.mass);
   now.bodies.resize(model.bodies.size());
   for (int i = 0; i < int(model.bodies.size()); ++i) {
     Snapshot::Body& body = now.bodies[i];
@@ -329,9 +347,9 @@ Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>
   }
   for (const Spring<D>& s : model.springs) {
     const Vec<D> a = place(state, s.a), b = place(state, s.b);
-    now.springs.push_back({to_3d<D>(a), to_3d<D>(b), s.a.body, s.b.body,
-                           -s.stiffness * ((b - a).norm() - s.rest_length),
-                           to_3d<D>(pull<D>(law(s), a, velocity(state, s.a), b, velocity(state, s.b)))});
+    now.springs.push_back(
+        {to_3d<D>(a), to_3d<D>(b), s.a.body, s.b.body, -s.stiffness * ((b - a).norm() - s.rest_length),
+         to_3d<D>(pull<D>(law(s), a, velocity(state, s.a), b, velocity(state, s.b))), s.loose});
   }
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint<D>& j = model.joints[i];

@@ -57,7 +57,7 @@ Stepper<D>::Stepper(const Model<D>& model)
       forces_(model),
       forced_flight_(model, forces_.flying()),
       springs_(!model.springs.empty() || !model.mice.empty() || !stability_warnings(model).empty()) {
-  wound_ropes_ = D == 2 && has_wound_ropes(model);
+  wound_ropes_ = has_wound_ropes(model);
   for (const Joint<D>& joint : model.joints) springs_ = springs_ || joint.coil.has_value();
   // so do bodies that are moved, and a potential that changes with the time
   for (const Body<D>& body : model.bodies) springs_ = springs_ && !body.carries();

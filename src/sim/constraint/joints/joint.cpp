@@ -14,6 +14,7 @@
 #include "sim/constraint/joints/slider.h"
 #include "sim/constraint/joints/weld.h"
 #include "sim/constraint/joints/wire.h"
+#include "sim/math/lie_step.h"
 #include "sim/model/script.h"
 
 namespace obscura::sim {
@@ -86,7 +87,7 @@ std::optional<int> follow_ropes(const Model<D>& model, State<D>& state) {
     for (std::size_t i = 0; i < model.joints.size(); ++i) {
       const Joint<D>& joint = model.joints[i];
       if (joint.kind != JointKind::pulley || (i < state.broken.size() && state.broken[i])) continue;
-      if (joint.on_a.offset == 0 && joint.on_b.offset == 0) continue;
+      if (joint.on_a.offset == 0 && joint.on_b.offset == 0 && joint.around.empty()) continue;
       joint.each_body([&](int body) {
         if (body >= 0) all[std::size_t(body)] = body_motion(state, body);
       });
@@ -114,15 +115,35 @@ AngularVec<3> between(const Orientation<3>& a, const Orientation<3>& b) {
 }  // namespace
 
 template <int D>
-Made<D> as_it_stands(const Joint<D>& joint, const State<D>& state) {
+Made<D> as_it_stands(const Joint<D>& joint, const State<D>& state, std::size_t number) {
   const auto motion = [&](int body) { return body < 0 ? BodyMotion<D>() : body_motion(state, body); };
   const auto turn = [&](int body) {
     const int k = body < 0 ? -1 : turning(state, body);
     return k < 0 ? no_rotation<D>() : state.turn[std::size_t(k)];
   };
   const BodyMotion<D> a = motion(joint.a.body), b = motion(joint.b.body);
-  const Vec<D> at = a.x + a.arm(joint.a.local);
   Made<D> so;
+  if (equations<D>(joint.kind).mechanism) {
+    std::vector<BodyMotion<D>> all(state.x.size());
+    joint.each_body([&](int body) {
+      if (body >= 0) all[std::size_t(body)] = motion(body);
+    });
+    const auto angle = [&](int body) {
+      return body < 0 ? AngularVec<D>(AngularVec<D>::Zero()) : rounds<D>(turn(body));
+    };
+    Row<D> J[kMostHeld<D>];
+    double C[kMostHeld<D>];
+    rows(joint, a, b, {joint.turn_between(angle), wound(state, number)}, J, C, all);
+    so.turn = joint.turn;
+    if (joint.kind == JointKind::pulley)
+      so.length = joint.length - C[0];
+    else if (D == 2)
+      so.turn[0] += C[0];
+    else
+      so.length = joint.lower + C[0];
+    return so;
+  }
+  const Vec<D> at = a.x + a.arm(joint.a.local);
   so.turn = between(turn(joint.a.body), turn(joint.b.body));
   if (equations<D>(joint.kind).apart)
     so.length = std::sqrt((at - b.x - b.arm(joint.b.local)).squaredNorm());
@@ -137,8 +158,10 @@ void join_as(Joint<D>& joint, const Made<D>& so) {
   joint.turn = so.turn;
   if (equations<D>(joint.kind).apart)
     joint.length = joint.length > 0 ? std::max(joint.length, so.length) : so.length;
-  else
+  else if (!equations<D>(joint.kind).mechanism)
     joint.b.local = so.place;
+  else if (D == 3)
+    joint.lower = so.length;
 }
 
 template const JointEquations<2>& equations<2>(JointKind);
@@ -160,8 +183,8 @@ template Wrench<3> coil_load<3>(const Joint<3>&, const BodyMotion<3>&, const Bod
                                 const JointTurn<3>&);
 template std::optional<int> follow_ropes<3>(const Model<3>&, State<3>&);
 
-template Made<2> as_it_stands<2>(const Joint<2>&, const State<2>&);
-template Made<3> as_it_stands<3>(const Joint<3>&, const State<3>&);
+template Made<2> as_it_stands<2>(const Joint<2>&, const State<2>&, std::size_t);
+template Made<3> as_it_stands<3>(const Joint<3>&, const State<3>&, std::size_t);
 template void join_as<2>(Joint<2>&, const Made<2>&);
 template void join_as<3>(Joint<3>&, const Made<3>&);
 

@@ -94,12 +94,20 @@ int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
          const std::type_identity_t<JointTurn<D>>& turn, Row<D>* out, double* off,
          std::type_identity_t<std::span<const BodyMotion<D>>> all = {});
 
-/// Whether a model has ropes on wheels.
+/// Whether a model has ropes on wheels, or with friction.
 template <int D>
 bool has_wound_ropes(const Model<D>& model) {
   return std::any_of(model.joints.begin(), model.joints.end(), [](const Joint<D>& joint) {
-    return joint.kind == JointKind::pulley && (joint.on_a.offset != 0 || joint.on_b.offset != 0);
+    return joint.kind == JointKind::pulley &&
+           (joint.on_a.offset != 0 || joint.on_b.offset != 0 || !joint.around.empty());
   });
+}
+
+/// Whether it has ropes with friction.
+template <int D>
+bool has_rubbing_ropes(const Model<D>& model) {
+  return std::any_of(model.joints.begin(), model.joints.end(),
+                     [](const Joint<D>& joint) { return !joint.around.empty(); });
 }
 
 /// Where the rope of a joint is on its wheels.
@@ -132,9 +140,10 @@ void break_dependents(const Model<D>& model, std::vector<char>& broken) {
 }
 
 /// How the ends of a joint stand: an end on b where the one on a is, unless a length is between them, and
-/// the turn of a against b.
+/// the turn of a against b. Of a mechanism what makes its C zero: a pulley's length, a gear's turn, in space
+/// its Joint::lower as `length`. `number`: that of the joint, for State::wound.
 template <int D>
-Made<D> as_it_stands(const Joint<D>& joint, const State<D>& state);
+Made<D> as_it_stands(const Joint<D>& joint, const State<D>& state, std::size_t number);
 
 /// The joint that an event has made so: from now on it holds.
 template <int D>

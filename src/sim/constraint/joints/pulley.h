@@ -10,8 +10,15 @@
 // that of the wheel. The poses tell phi but for its rounds: it is the angle nearest to State::wound. The
 // piece between two ends p_a and p_b, centres of wheels or points, is tangent to both:
 //   p_b - p_a = l d - q perp(d),   q = q_a - q_b
+// With friction (mu > 0) its rope slides over all that is between its ends, points and wheels, which are
+// wheels in the plane alone; several of them stand still. Arcs are q (phi_out - phi_in) of it, and beside the
+// tension f there is a drag, the tension at a less that at b:
+//   J_d v = (J_first - J_last) v / 2            of the free pieces at a and b: half the slip, in m/s
+//   |drag| <= mu_e f,   mu_e = 2 tanh(mu wrap / 2)      so that the greater tension is at most e^(mu wrap)
+//                                                       times the lesser; against the slip where it slips
 // free: all, until it is tight. Its force is the tension, shown as that on a. Breaks by it.
-// Source: Featherstone, Rigid Body Dynamics Algorithms (2008), §8, as a sum of distance constraints.
+// Source: Featherstone, Rigid Body Dynamics Algorithms (2008), §8, as a sum of distance constraints; the
+// friction is Euler's and Eytelwein's of a belt.
 
 #include <algorithm>
 #include <cmath>
@@ -69,7 +76,9 @@ inline RopeEnd rope_end(const JointPose<2>& at, bool first) {
         &to = !first || lone ? joint.b : joint.over.front();
   const BodyMotion<2>&p = at.side(from.body), &q = at.side(to.body);
   const Vec<2> arm_p = p.arm(from.local), arm_q = q.arm(to.local);
-  const double on_a = first || lone ? joint.on_a.offset : 0, on_b = !first || lone ? joint.on_b.offset : 0;
+  const auto inner = [&](std::size_t i) { return i < joint.around.size() ? joint.around[i] : 0; };
+  const double on_a = first || lone ? joint.on_a.offset : inner(joint.over.size() - 1),
+               on_b = !first || lone ? joint.on_b.offset : inner(0);
   return {p.x + arm_p, q.x + arm_q, on_a - on_b, q.velocity(arm_q) - p.velocity(arm_p)};
 }
 
@@ -90,7 +99,8 @@ inline std::optional<Wound> on_wheels(const JointPose<2>& at, double h) {
   Wound now = at.wound;
   for (const bool first : {true, false}) {
     const Winding<2>& wheel = first ? at.joint.on_a : at.joint.on_b;
-    if (wheel.offset == 0) continue;
+    const std::vector<double>& around = at.joint.around;
+    if (wheel.offset == 0 && (around.empty() || (first ? around.front() : around.back()) == 0)) continue;
     const RopeEnd end = rope_end(at, first);
     const RopePiece<2> piece = rope_piece<2>(end.from, end.to, end.offset);
     if (runs_out(end, piece, h)) return {};
@@ -100,46 +110,70 @@ inline std::optional<Wound> on_wheels(const JointPose<2>& at, double h) {
   return now;
 }
 
+/// The places of a rope in their order, from a to b, with what it runs over between them.
+template <int D>
+class RopePlaces {
+ public:
+  explicit RopePlaces(const JointPose<D>& at) : at_(at) {}
+
+  int size() const { return int(at_.joint.over.size()) + 2; }
+  const End<D>& end(int i) const {
+    return i == 0 ? at_.joint.a : i + 1 == size() ? at_.joint.b : at_.joint.over[std::size_t(i - 1)];
+  }
+  /// As Winding::offset, m.
+  double offset(int i) const {
+    if (i == 0) return at_.joint.on_a.offset;
+    if (i + 1 == size()) return at_.joint.on_b.offset;
+    return at_.joint.around.empty() ? 0 : at_.joint.around[std::size_t(i - 1)];
+  }
+  /// The straight piece from place i to the next.
+  RopePiece<D> piece(int i) const {
+    const BodyMotion<D>&p = at_.side(end(i).body), &q = at_.side(end(i + 1).body);
+    return rope_piece<D>(Vec<D>(p.x + p.arm(end(i).local)), Vec<D>(q.x + q.arm(end(i + 1).local)),
+                         offset(i) - offset(i + 1));
+  }
+  /// Adds a piece to a row of the rope, `share` times: its ends, less the turn of wheels there, and J' v.
+  void add(int i, const RopePiece<D>& piece, double share, Row<D>& row) const {
+    const BodyMotion<D>&p = at_.side(end(i).body), &q = at_.side(end(i + 1).body);
+    const Vec<D> arm_p = p.arm(end(i).local), arm_q = q.arm(end(i + 1).local);
+    const Vec<D>& d = piece.direction;
+    const auto side = [&](int place, const Vec<D>& arm, double sign) {
+      const int body = end(place).body;
+      if (body < 0) return;
+      RowSide<D> it{body, Vec<D>(sign * d), moment<D>(arm, Vec<D>(sign * d))};
+      if constexpr (D == 2) it.angular[0] += sign * offset(place);
+      row.more.push_back(it);
+    };
+    side(i, arm_p, share), side(i + 1, arm_q, -share);
+    const Vec<D> u = q.velocity(arm_q) - p.velocity(arm_p);
+    const double along = d.dot(u);
+    if (piece.length > 0) row.velocity_product -= share * ((u.squaredNorm() - along * along) / piece.length);
+    row.velocity_product -= share * d.dot(cross_velocity<D>(q.w, cross_velocity<D>(q.w, arm_q)) -
+                                          cross_velocity<D>(p.w, cross_velocity<D>(p.w, arm_p)));
+    if (i == 0) row.along = share * d;
+  }
+
+ private:
+  const JointPose<D>& at_;
+};
+
 template <int D>
 void hold_rope(const JointPose<D>& at, Row<D>* J, double* C) {
   const Joint<D>& joint = at.joint;
   Row<D> row;
-  const int points = int(joint.over.size()) + 2;
-  const auto end = [&](int i) -> const End<D>& {
-    return i == 0 ? joint.a : i + 1 == points ? joint.b : joint.over[std::size_t(i - 1)];
-  };
-  const auto offset = [&](int i) {
-    return i == 0 ? joint.on_a.offset : i + 1 == points ? joint.on_b.offset : 0;
-  };
+  const RopePlaces<D> places(at);
+  const int points = places.size();
   double free = 0;  // how long the pieces are, and what wheels have given out
-  // what a piece adds at one of its ends: `sign` times d there, less the turn of a wheel
-  const auto side = [&](int i, const Vec<D>& d, double sign) {
-    const int body = end(i).body;
-    if (body < 0) return;
-    const Vec<D> arm = at.side(body).arm(end(i).local);
-    RowSide<D> it{body, Vec<D>(sign * d), moment<D>(arm, Vec<D>(sign * d))};
-    if constexpr (D == 2) it.angular[0] += sign * offset(i);
-    row.more.push_back(it);
-  };
   for (int i = 0; i + 1 < points; ++i) {
-    const BodyMotion<D>&p = at.side(end(i).body), &q = at.side(end(i + 1).body);
-    const Vec<D> arm_p = p.arm(end(i).local), arm_q = q.arm(end(i + 1).local);
-    const RopePiece<D> piece =
-        rope_piece<D>(Vec<D>(p.x + arm_p), Vec<D>(q.x + arm_q), offset(i) - offset(i + 1));
-    const Vec<D>& d = piece.direction;
+    const RopePiece<D> piece = places.piece(i);
     free += piece.length;
-    side(i, d, 1), side(i + 1, d, -1);
-    const Vec<D> u = q.velocity(arm_q) - p.velocity(arm_p);
-    const double along = d.dot(u);
-    if (piece.length > 0) row.velocity_product -= (u.squaredNorm() - along * along) / piece.length;
-    row.velocity_product -= d.dot(cross_velocity<D>(q.w, cross_velocity<D>(q.w, arm_q)) -
-                                  cross_velocity<D>(p.w, cross_velocity<D>(p.w, arm_p)));
-    if (i == 0) row.along = d;
+    places.add(i, piece, 1, row);
     if constexpr (D == 2) {
-      if (i == 0 && joint.on_a.offset != 0)
-        free += joint.on_a.offset * angle_between(joint.on_a.start, d, at.wound.a);
-      if (i + 2 == points && joint.on_b.offset != 0)
-        free -= joint.on_b.offset * angle_between(joint.on_b.start, d, at.wound.b);
+      const double first = joint.around.empty() ? joint.on_a.offset : -joint.around.front(),
+                   last = joint.around.empty() ? joint.on_b.offset : -joint.around.back();
+      if (i == 0 && first != 0) free += first * angle_between(joint.on_a.start, piece.direction, at.wound.a);
+      if (i + 2 == points && last != 0)
+        free -= last * angle_between(joint.on_b.start, piece.direction, at.wound.b);
     }
   }
   C[0] = joint.length - free;
@@ -147,6 +181,48 @@ void hold_rope(const JointPose<D>& at, Row<D>* J, double* C) {
     if (!joint.turns.empty()) C[0] += (at.turn - joint.turn)[0];
   }
   J[0] = std::move(row);
+}
+
+/// Whether the rope of a joint slides over things with friction.
+template <int D>
+bool rubs(const Joint<D>& joint) {
+  return joint.kind == JointKind::pulley && joint.friction > 0;
+}
+
+/// How far a rope with friction is wrapped around all that it slides over, rad, at least 0.
+template <int D>
+double rope_wrap(const JointPose<D>& at) {
+  const Joint<D>& joint = at.joint;
+  const RopePlaces<D> places(at);
+  const int points = places.size();
+  double wrap = joint.wrap;
+  Vec<D> before = places.piece(0).direction;
+  const Vec<D> first = before;
+  for (int i = 1; i + 1 < points; ++i) {
+    const Vec<D> after = places.piece(i).direction;
+    const double turn = std::clamp(before.dot(after), -1.0, 1.0);
+    if (places.offset(i) == 0) wrap += elementary::acos(turn);
+    before = after;
+  }
+  if constexpr (D == 2) {
+    const auto sign = [](double q) { return q > 0 ? 1.0 : q < 0 ? -1.0 : 0.0; };
+    wrap -= sign(joint.around.front()) * angle_between(joint.on_a.start, first, at.wound.a);
+    wrap += sign(joint.around.back()) * angle_between(joint.on_b.start, before, at.wound.b);
+  }
+  return std::max(0.0, wrap);
+}
+
+/// The row of the drag of a rope with friction; its force is the tension at a less that at b, N. Returns
+/// mu_e.
+template <int D>
+double hold_drag(const JointPose<D>& at, Row<D>& out) {
+  const RopePlaces<D> places(at);
+  const int last = places.size() - 2;
+  Row<D> row;
+  places.add(0, places.piece(0), 0.5, row);
+  places.add(last, places.piece(last), -0.5, row);
+  out = std::move(row);
+  return 2 * elementary::tanh(at.joint.friction * rope_wrap(at) / 2);
 }
 
 template <int D>

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/constraint/joints/pulley.h"
 #include "sim/energy/energy.h"
 #include "sim/math/lie_step.h"
 #include "sim/solve/exact/exact.h"
@@ -107,6 +108,9 @@ void ExactSolver<D>::build_jacobian(Constraint& constraint, const JointTurn<D>& 
     if (constraint.kind == Constraint::Kind::joint || constraint.kind == Constraint::Kind::rope) {
       constraint.rows = sim::rows(joint, a, b, turn, out, constraint.offs, poses_);
       constraint.off = constraint.offs[0];
+    } else if (rubs(joint)) {
+      constraint.grip = hold_drag<D>({joint, a, b, turn.between, poses_, turn.wound}, out[0]);
+      constraint.rows = 1;
     } else {
       double way = 0;
       free_row(joint, a, b, turn, out[0], way);
@@ -156,6 +160,9 @@ void ExactSolver<D>::collect_constraints(const State<D>& state, double fastest) 
     if (state.broken[i] || !moves(joint)) continue;
     const JointTurn<D> turn = turn_between(state, joint);
     if (!joint.linked) add(one_sided(joint) ? Kind::rope : Kind::joint, i, turn, one_sided(joint));
+    if (rubs(joint) && !constraints_.empty() && constraints_.back().kind == Kind::rope &&
+        constraints_.back().of == i)
+      add(Kind::friction, i, turn, false);
     if (!has_free_row(joint)) continue;
     if (joint.lower > -1e299) add(Kind::lower, i, turn, true);
     if (joint.upper < 1e299) add(Kind::upper, i, turn, true);
@@ -200,13 +207,14 @@ void ExactSolver<D>::build_blocks(bool impulses) {
       case Kind::motor:
       case Kind::friction: {
         const Joint<D>& joint = model_.joints[constraint.of];
-        const bool wire = constraint.kind == Kind::friction && joint.kind == JointKind::wire;
-        // that of a wire goes by its load, see rub_wires()
-        const double most = wire ? 0 : constraint.kind == Kind::motor ? joint.motor->most : joint.friction;
+        const bool wire = joint.kind == JointKind::wire, by_load = wire || rubs(joint);
+        // that of a wire or a rope goes by its load, see rub(); of blows on a wire there is none
+        if (wire) constraint.grip = impulses ? 0 : joint.friction;
+        const double most = by_load ? 0 : constraint.kind == Kind::motor ? joint.motor->most : joint.friction;
         const double slip =
             row_velocity(constraint.first) - (constraint.kind == Kind::motor ? aim(constraint).speed : 0);
         block.law = Law::bounded, block.lower = -most, block.upper = most;
-        constraint.rubs = !wire || impulses ? 0 : slip > still_speed_ ? 1 : slip < -still_speed_ ? -1 : 0;
+        constraint.rubs = !by_load || impulses ? 0 : slip > still_speed_ ? 1 : slip < -still_speed_ ? -1 : 0;
         if (impulses)
           block.lower = block.upper = 0;
         else if (slip > still_speed_)
@@ -320,14 +328,20 @@ bool ExactSolver<D>::solve_laws(std::span<const double> rate) {
   warm_start_rows(1);
   bool found = solve();
   for (std::size_t i = 0; found && i < constraints_.size() && begin_to_slip(); ++i) found = solve();
-  for (int i = 0; i < kMostRubs && rub_wires(); ++i) found = solve();
+  for (int i = 0; i < kMostRubs && rub(i); ++i) found = solve();
+  // what can give one force only slips on, also where its acceleration happens to be zero
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    if (blocks_[i].law == Law::bounded && blocks_[i].lower == blocks_[i].upper &&
+        modes_[i].kind == ModeKind::free)
+      modes_[i].kind = ModeKind::at_lower;
+  }
   return found;
 }
 
 // Collects also what separates slower than the resting speed and would be back soon, or from next to nowhere:
 // where the forces of all else close a row again, w < 0, it is held if its velocity v is at most
-// -w (rest_speed / g), or its way v^2 / -2w at most kNowhere of the room. What they do not close, or as slowly as
-// the far corner of a slim block that rocks, is on its way.
+// -w (rest_speed / g), or its way v^2 / -2w at most kNowhere of the room. What they do not close, or as
+// slowly as the far corner of a slim block that rocks, is on its way.
 template <int D>
 void ExactSolver<D>::collect_returning(const State<D>& state, double t) {
   const auto unheld = dynamics_.accelerations(state, t);

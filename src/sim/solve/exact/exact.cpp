@@ -67,7 +67,7 @@ typename ExactSolver<D>::Limits ExactSolver<D>::make_limits(const Model<D>& mode
   number(limits.bodies, model.bodies.size()), number(limits.joints, model.joints.size());
   number(limits.springs, model.springs.size()), number(limits.chains, model.chains.size());
   limits.tied_by_forces = tied_by_forces(model);
-  limits.wires = has_wires(model);
+  limits.wires = has_wires(model), limits.rubs = limits.wires || has_rubbing_ropes(model);
   if (!model.rails.empty()) limits.rails.resize(model.bodies.size());
   for (int i = 0; i < int(model.rails.size()); ++i) {
     const Rail<D>& rail = model.rails[std::size_t(i)];
@@ -167,6 +167,10 @@ bool ExactSolver<D>::collide(StepPart<D> step) {
   resize_for(state);
   step_.contacts.clear(), step_.impulses.clear();
   outcome_.joint_loads.resize(state.joint_forces.size());
+  if (limits_.rubs) {
+    outcome_.drags.assign(state.joint_forces.size(), 0);
+    for (std::size_t i = 0; i < state.wound.size(); ++i) outcome_.drags[i] = state.wound[i].drag;
+  }
   for (std::size_t i = 0; i < state.joint_forces.size(); ++i)
     outcome_.joint_loads[i] = {state.joint_torques[i], state.joint_forces[i]};
   cone_.thorough = model_.collision == Collision::event || state.step % kThorough == 0;
@@ -408,7 +412,7 @@ void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const 
   // constraints that hold go on holding
   if (D > 2) turn_slip_directions();
   solve_held();
-  for (int i = 0; i < kMostRubs && rub_wires(); ++i) solve_held();
+  for (int i = 0; i < kMostRubs && rub(i); ++i) solve_held();
   for (int i = 0; i < int(rows_.size()); ++i) add_accelerations(i, f_[i], v_rate);
   if (const int work = dynamics_.work_place(); work >= 0) {
     for (int i = 0; i < int(rows_.size()); ++i) v_rate[std::size_t(work)] += f_[i] * given(i);
@@ -461,6 +465,7 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   chains.jump(state, scratch_.chain_change, false);
   warm_start_rows(fastest < kCreep * limits_.unit_speed ? h : 0);
   solve();
+  for (int i = 0; i < kMostRubs && rub(i); ++i) solve();
   apply_impulses(state, false);
   for (int i = 0; i < int(rows_.size()); ++i) progress_.given += f_[i] * given(i);
   for (const int body : members) {

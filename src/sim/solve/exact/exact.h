@@ -66,7 +66,9 @@ class ExactSolver final : public ContactSolver<D>, private System {
     Vec<D> slip = Vec<D>::Zero();
     bool slow = false;  // that direction is kept through the interval
     double taken = 0;   // how much of its slip friction takes away until the step ends, m/s
-    double rubs = 0;    // of friction on a wire: the sign of the motion that it is against
+    // of friction that goes by a load, of a wire or a rope: the sign of the motion that it is against, how
+    // much of the load it is at most, and the bounds that were tried and found last
+    double rubs = 0, grip = 0, tried = 0, needed = 0;
   };
 
   // poses and velocities
@@ -113,6 +115,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<int> fixed;                            // of Serves::lone: fixed bodies
     std::vector<std::vector<int>> rails;               // of each body, of a model that has some
     bool wires = false;                                // some joints are
+    bool rubs = false;                                 // some have friction that goes by their load
   };
   static Limits make_limits(const Model<D>& model, Serves bodies);
 
@@ -174,6 +177,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   struct Outcome {
     std::vector<Contact<D>> contacts, impulses;
     std::vector<Wrench<D>> joint_loads;  // on a, about its place
+    std::vector<double> drags;           // of ropes with friction, as Wound::drag, N
   };
 
   // scratch: no function reads here what another left
@@ -264,7 +268,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void collect_returning(const State<D>& state, double t);
   void build_jacobian(Constraint& constraint, const JointTurn<D>& turn);
   void build_blocks(bool impulses);
-  static constexpr int kMostRubs = 50;  // rounds of friction on wires
+  static constexpr int kMostRubs = 50;  // rounds of friction that goes by a load
   bool solve_laws(std::span<const double> rate);
   bool begin_to_slip();
   bool solve_modes(State<D>& state, double t);
@@ -362,7 +366,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   double passing_time(const State<D>& state, double h);
   AngularVec<D> wire_pose(int joint) const;
   void follow_wires(const State<D>& state);
-  bool rub_wires();
+  bool rub(int round);
   void let_go_of_wires(State<D>& state);
 
   // whether a contact has more friction at hand than where it slips

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/constraint/joints/pulley.h"
 #include "sim/solve/exact/exact.h"
 
 namespace obscura::sim {
@@ -24,6 +25,8 @@ template <int D>
 void ExactSolver<D>::write_contacts(State<D>& state) {
   for (std::size_t i = 0; i < outcome_.joint_loads.size(); ++i)
     state.joint_forces[i] = outcome_.joint_loads[i].f, state.joint_torques[i] = outcome_.joint_loads[i].n;
+  for (std::size_t i = 0; i < state.wound.size() && limits_.rubs; ++i)
+    state.wound[i].drag = outcome_.drags[i];
   for (const Contact<D>& struck : outcome_.impulses) {
     const auto at = std::lower_bound(outcome_.contacts.begin(), outcome_.contacts.end(), struck,
                                      [](const auto& p, const auto& q) { return p.key < q.key; });
@@ -52,11 +55,16 @@ void ExactSolver<D>::record_forces(const State<D>& state) {
   outcome_.contacts.clear(), progress_.known = &outcome_.contacts;
   // one that has broken in this step is shown with what broke it
   for (const int i : active_.joints) {
-    if (moves(model_.joints[i]) && state.broken[i] == step_.broken[i]) outcome_.joint_loads[i] = {};
+    if (!moves(model_.joints[i]) || state.broken[i] != step_.broken[i]) continue;
+    outcome_.joint_loads[i] = {};
+    if (limits_.rubs) outcome_.drags[std::size_t(i)] = 0;
   }
   record_chain_forces();
   for (const Constraint& constraint : constraints_) {
-    if (constraint.kind != Constraint::Kind::contact) outcome_.joint_loads[constraint.of] += load(constraint);
+    if (constraint.kind == Constraint::Kind::contact) continue;
+    outcome_.joint_loads[constraint.of] += load(constraint);
+    if (constraint.kind == Constraint::Kind::friction && rubs(model_.joints[constraint.of]))
+      outcome_.drags[std::size_t(constraint.of)] = f_[constraint.first];
   }
   for (const int i : active_.joints) {
     if (model_.joints[i].coil && moves(model_.joints[i]) && !state.broken[i])

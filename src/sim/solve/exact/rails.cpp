@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/constraint/joints/pulley.h"
 #include "sim/constraint/joints/wire.h"
 #include "sim/solve/exact/exact.h"
 
@@ -376,24 +377,34 @@ void ExactSolver<D>::follow_wires(const State<D>& state) {
   }
 }
 
-// Friction on wires is mu times the load: the bounds from the forces found last. True: they have changed.
+// Friction that is a part of a load, a wire's force or a rope's tension: the bounds from the forces found
+// last. True: they have changed. While what slips goes on, the load of a rope changes in proportion to its
+// bound, so a secant finds it.
 template <int D>
-bool ExactSolver<D>::rub_wires() {
-  if (!limits_.wires) return false;
+bool ExactSolver<D>::rub(int round) {
+  if (!limits_.rubs) return false;
   bool changed = false;
-  for (const Constraint& constraint : constraints_) {
+  for (Constraint& constraint : constraints_) {
     if (constraint.kind != Constraint::Kind::friction) continue;
     const Joint<D>& joint = model_.joints[constraint.of];
-    if (joint.kind != JointKind::wire) continue;
+    if (joint.kind != JointKind::wire && !rubs(joint)) continue;
     double load2 = 0;
     for (const Constraint& other : constraints_) {
-      if (other.kind != Constraint::Kind::joint || other.of != constraint.of) continue;
+      const bool bears = other.kind == Constraint::Kind::joint || other.kind == Constraint::Kind::rope;
+      if (!bears || other.of != constraint.of) continue;
       for (int k = 0; k < other.rows; ++k) load2 += f_[other.first + k] * f_[other.first + k];
     }
-    const double most = joint.friction * std::sqrt(load2);
+    const double needed = constraint.grip * std::sqrt(load2);
     ConeBlock<D>& block = blocks_[constraint.block];
     const double before = std::max(std::abs(block.lower), std::abs(block.upper));
-    changed = changed || std::abs(most - before) > kSteady * most;
+    changed = changed || std::abs(needed - before) > kSteady * needed;
+    double most = needed;
+    if (round > 0 && before != constraint.tried && rubs(joint)) {
+      const double slope = (needed - constraint.needed) / (before - constraint.tried);
+      const double next = before + (needed - before) / (1 - slope);
+      if (slope < 1 && std::isfinite(next) && next >= 0) most = next;
+    }
+    constraint.tried = before, constraint.needed = needed;
     block.lower = constraint.rubs < 0 ? most : -most;
     block.upper = constraint.rubs > 0 ? -most : most;
   }
@@ -426,7 +437,7 @@ void ExactSolver<D>::let_go_of_wires(State<D>& state) {
   template double ExactSolver<D>::passing_time(const State<D>&, double);                       \
   template AngularVec<D> ExactSolver<D>::wire_pose(int) const;                                 \
   template void ExactSolver<D>::follow_wires(const State<D>&);                                 \
-  template bool ExactSolver<D>::rub_wires();                                                   \
+  template bool ExactSolver<D>::rub(int);                                                      \
   template void ExactSolver<D>::let_go_of_wires(State<D>&)
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);

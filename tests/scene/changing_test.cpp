@@ -1,0 +1,191 @@
+// What an event changes beside bodies and joints that it holds together: springs that are let go, joined or
+// set, the mass of a body, gears and pulleys that engage.
+
+#include "scene/text_run.h"
+
+namespace obscura::scene {
+namespace {
+
+constexpr double kSemicircle = 3.14159265358979323846;
+
+std::string round_body(const std::string& name, double mass, double radius, const std::string& more) {
+  return fmt::format("[[ball]]\nname = \"{}\"\nmass = {}\nradius = {}\n{}\n", name, mass, radius, more);
+}
+
+const std::string kSemicirclens =
+    "[[joint]]\nname = \"p\"\ntype = \"{0}\"\nbetween = [\"a\", \"room\"]\n"
+    "[[joint]]\nname = \"q\"\ntype = \"{0}\"\nbetween = [\"b\", \"room\"]\n";
+
+// Two that a spring drives apart until it is relaxed, where it is let go: p^2 (1/m + 1/n) = k d^2. What it
+// had left is booked as work.
+TEST(Changing, ASpringIsLetGo) {
+  for (const Manner& manner : kManners) {
+    for (const int dimension : {2, 3}) {
+      const std::string third = dimension == 3 ? ", 0" : "";
+      const TextRun run(
+          (dimension == 2 ? plane_without_walls(manner, "gravity = [0, 0]")
+                          : space_without_walls(manner, "gravity = [0, 0, 0]")) +
+          "rate = 600\n" + round_body("a", 1, 0.1, "position = [0, 0" + third + "]") +
+          round_body("b", 3, 0.1, "position = [0.5, 0" + third + "]") +
+          "[[spring]]\nname = \"band\"\nbetween = [\"a\", \"b\"]\nstiffness = 100\nrest_length = 1\n"
+          "[[when]]\nvalue = \"b.x - a.x > 1\"\ndo = [{ release = \"band\" }]\n");
+      const std::size_t a = number_of(run, "a"), b = number_of(run, "b");
+      const sim::Snapshot now = run.at(2);
+      const double p = std::sqrt(18.75), tolerance = manner.name == "event" ? 1e-7 : 1e-3;
+      EXPECT_NEAR(now.bodies[a].velocity.x(), -p, tolerance) << manner.name << dimension;
+      EXPECT_NEAR(3 * now.bodies[b].velocity.x(), p, tolerance) << manner.name << dimension;
+      EXPECT_NEAR(now.bodies[a].velocity.x() + 3 * now.bodies[b].velocity.x(), 0, 1e-12) << manner.name;
+      EXPECT_NEAR(now.energies.total() - now.energies.work, 12.5, 1e-8) << manner.name;
+      EXPECT_TRUE(now.springs[0].loose);
+      EXPECT_EQ(now.springs[0].force.norm(), 0);
+    }
+  }
+}
+
+// One of a list of springs, by its number; the others hold.
+TEST(Changing, OneSpringOfSeveral) {
+  const TextRun run(plane_without_walls(kManners[1], "gravity = [0, 0]") +
+                    "[[particle]]\nname = \"p\"\nmass = 1\nposition = [0, 1]\nvelocity = [1, 0]\n"
+                    "copies = { count = 3, offset = [1, 0] }\n"
+                    "[[spring]]\nname = \"s\"\nbetween = [\"p[*]\", [0, 0]]\nrest_length = 0\n"
+                    "[[when]]\ntime = 1\ndo = [{ release = \"s[1]\" }]\n");
+  const sim::Snapshot now = run.at(2);
+  EXPECT_FALSE(now.springs[0].loose);
+  EXPECT_TRUE(now.springs[1].loose);
+  EXPECT_FALSE(now.springs[2].loose);
+}
+
+// A spring that an event joins, sets and lets go: x(t) of each piece, with its w^2 = k / m. Times are exact
+// in every manner, and in the handout's, too.
+TEST(Changing, ASpringIsJoinedAndSet) {
+  std::vector<Manner> manners = kManners;
+  manners.push_back({"handout", "[physics]\ncollision = \"handout\""});
+  for (const Manner& manner : manners) {
+    const TextRun run(plane_without_walls(manner, "gravity = [0, 0]") +
+                      "[[particle]]\nname = \"p\"\nmass = 2\nposition = [0, 0]\nvelocity = [1, 0]\n"
+                      "[[spring]]\nname = \"s\"\nbetween = [\"p\", [0, 0]]\nstiffness = 8\nrest_length = 0\n"
+                      "joined = false\n"
+                      "[[when]]\ntime = 1\ndo = [{ join = \"s\" }]\n"
+                      "[[when]]\ntime = 1.5\ndo = [{ set = \"s.stiffness\", to = 18 }]\n"
+                      "[[when]]\ntime = 2\ndo = [{ release = \"s\" }]\n");
+    EXPECT_NEAR(run.place(1).x(), 1, 1e-12) << manner.name;
+    const double x = std::cos(1.0) + 0.5 * std::sin(1.0), v = std::cos(1.0) - 2 * std::sin(1.0);
+    EXPECT_NEAR(run.place(1.5).x(), x, 1e-8) << manner.name;
+    const double then = x * std::cos(1.5) + v / 3 * std::sin(1.5),
+                 u = v * std::cos(1.5) - 3 * x * std::sin(1.5);
+    EXPECT_NEAR(run.place(2).x(), then, 1e-8) << manner.name;
+    EXPECT_NEAR(run.place(3).x(), then + u, 1e-8) << manner.name;
+  }
+}
+
+// A mass that changes keeps its velocity: what comes or goes has it. Its frequency and its weight are those
+// of the new mass, and its inertia goes with it.
+TEST(Changing, AMassIsSet) {
+  for (const Manner& manner : kManners) {
+    const TextRun run(plane_without_walls(manner, "gravity = [0, 0]") +
+                      round_body("b", 1, 0.2, "position = [1, 0]\nspin = 100") +
+                      "[[spring]]\nbetween = [\"b\", [0, 0]]\nstiffness = 4\nrest_length = 0\n"
+                      "[[when]]\ntime = 1\ndo = [{ set = \"b.mass\", to = 4 }]\n");
+    const double x = std::cos(2.0), v = -2 * std::sin(2.0);
+    EXPECT_NEAR(run.place(1).x(), x, 1e-8) << manner.name;
+    const sim::Snapshot now = run.at(2);
+    EXPECT_NEAR(now.bodies[0].position.x(), x * std::cos(1.0) + v * std::sin(1.0), 1e-8) << manner.name;
+    EXPECT_NEAR(now.bodies[0].spin.z(), 100 * kSemicircle / 180, 1e-12) << manner.name;
+    EXPECT_NEAR(now.angular_momentum.z(), 0.5 * 4 * 0.04 * 100 * kSemicircle / 180, 1e-9) << manner.name;
+    EXPECT_EQ(sim::mass(run.run->scene_info(), now, 0), 4);
+    EXPECT_NEAR(now.energies.total() - now.energies.work, 2 + 0.5 * 0.02 * std::pow(100 * kSemicircle / 180, 2),
+                1e-8);
+  }
+}
+
+// Newton's attraction goes by the masses: a planet whose sun loses half of its mass at the apex of its circle
+// is free.
+TEST(Changing, AttractionGoesByTheMassThatIsSet) {
+  const TextRun run(plane_without_walls(kManners[1], "gravity = [0, 0]\ngravitation = 1") +
+                    "[[particle]]\nname = \"sun\"\nmass = 1000\nposition = [0, 0]\n"
+                    "[[particle]]\nname = \"planet\"\nmass = 1e-9\nposition = [10, 0]\nvelocity = [0, 10]\n"
+                    "[[when]]\ntime = 1\ndo = [{ set = \"sun.mass\", to = 500 }]\n");
+  const std::size_t planet = number_of(run, "planet");
+  EXPECT_NEAR(run.place(1, planet).norm(), 10, 1e-8);
+  // a parabola of r = p / (1 + cos f), p = 20: Barker's equation, f/2 + tan^3(f/2) / 3 = sqrt(mu / p^3) t
+  const double M = 2 * std::sqrt(500 / 8000.0) * 4, B = 1.5 * M, c = std::cbrt(B + std::sqrt(B * B + 1));
+  const double D = c - 1 / c;
+  EXPECT_NEAR(run.place(5, planet).norm(), 10 * (1 + D * D), 1e-6);
+}
+
+// A gear that engages: the wheels share the angular momentum by its ratio, and keep their phase from then on.
+TEST(Changing, AGearEngages) {
+  for (const Manner& manner : kManners) {
+    for (const int dimension : {2, 3}) {
+      const std::string third = dimension == 3 ? ", 0" : "";
+      const TextRun run(
+          (dimension == 2 ? plane_without_walls(manner, "gravity = [0, 0]")
+                          : space_without_walls(manner, "gravity = [0, 0, 0]")) +
+          round_body("a", 1, 0.2,
+                     "position = [0, 0" + third +
+                         "]\nrotation = true\nspin = " + (dimension == 2 ? "360" : "[0, 0, 360]")) +
+          round_body("b", 2, 0.4, "position = [0.6, 0" + third + "]\nrotation = true") +
+          fmt::format(fmt::runtime(kSemicirclens), dimension == 2 ? "pin" : "hinge") +
+          "[[joint]]\nname = \"g\"\ntype = \"gear\"\njoints = [\"p\", \"q\"]\nratio = -2\njoined = false\n"
+          "[[when]]\ntime = 1.3\ndo = [{ join = \"g\" }]\n"
+          "[[when]]\ntime = 4\ndo = [{ release = \"g\" }]\n");
+      const std::size_t a = number_of(run, "a"), b = number_of(run, "b");
+      EXPECT_NEAR(run.at(1.2).bodies[a].spin.z(), 2 * kSemicircle, 1e-9) << manner.name << dimension;
+      const sim::Snapshot now = run.at(3);
+      EXPECT_NEAR(now.bodies[a].spin.z(), 2 * kSemicircle / 3, 1e-8) << manner.name << dimension;
+      EXPECT_NEAR(now.bodies[b].spin.z(), -kSemicircle / 3, 1e-8) << manner.name << dimension;
+      if (dimension == 2) {
+        EXPECT_NEAR(now.bodies[a].angle + 2 * now.bodies[b].angle, 2 * kSemicircle * 1.3, 1e-6) << manner.name;
+      }
+      EXPECT_NEAR(run.at(6).bodies[a].spin.z(), 2 * kSemicircle / 3, 1e-8) << manner.name << dimension;
+    }
+  }
+}
+
+// A rope that is caught while both of its weights fall: it stops the sum of their ways, and then they go on
+// as Atwood's.
+TEST(Changing, APulleyEngages) {
+  for (const Manner& manner : kManners) {
+    for (const bool wheel : {false, true}) {
+      const TextRun run(plane_without_walls(manner) + round_body("a", 3, 0.1, "position = [-0.3, -5]") +
+                        round_body("b", 1, 0.1, "position = [0.3, -5]") +
+                        round_body("w", 2, 0.3, "position = [0, 0]\nrotation = true") +
+                        "[[joint]]\ntype = \"pin\"\nbetween = [\"w\", \"room\"]\n"
+                        "[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [\"a\", \"b\"]\nover = " +
+                        (wheel ? "[\"w\"]" : "[[-0.3, 0], [0.3, 0]]") +
+                        "\njoined = false\n[[when]]\ntime = 0.4\ndo = [{ join = \"rope\" }]\n");
+      const std::size_t a = number_of(run, "a"), b = number_of(run, "b");
+      const double v = 0.4 * 9.81, whole = 4 + (wheel ? 0.5 * 2 : 0), u = v * (3 - 1) / whole;
+      const double falls = 9.81 * 2 / whole;
+      const sim::Snapshot now = run.at(0.9);
+      EXPECT_NEAR(now.bodies[a].velocity.y(), -u - 0.5 * falls, manner.name == "iterative" ? 1e-6 : 1e-9)
+          << manner.name << wheel;
+      EXPECT_NEAR(now.bodies[b].velocity.y(), u + 0.5 * falls, manner.name == "iterative" ? 1e-6 : 1e-9)
+          << manner.name << wheel;
+    }
+  }
+}
+
+TEST(Changing, WhatCannotBeChangedIsRefused) {
+  const std::string room = plane_without_walls(kManners[0]) +
+                           round_body("a", 1, 0.3, "position = [-2, 0.25]") +
+                           round_body("c", 1, 0.3, "position = [2, 0]\nfixed = true") +
+                           "[[spring]]\nname = \"band\"\nbetween = [\"a\", \"c\"]\n";
+  const auto when = [&](const std::string& more) {
+    return refusal(room + "[[when]]\ntime = 1\ndo = [{ " + more + " }]\n");
+  };
+  const auto expect = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  expect(when("set = \"c.mass\", to = 2"), "'c' is fixed, and has no mass");
+  expect(when("set = \"a.mass\", to = -2"), "mass");
+  expect(when("set = \"band.stiffness\", to = -2"), "stiffness");
+  expect(when("set = \"a.radius\", to = 2"), "SPRING.stiffness");
+  expect(when("release = \"bend\""), "no body, joint or spring is called 'bend'; did you mean 'band'?");
+  expect(refusal(room + "joined = false\n"), "needs 'rest_length'");
+  expect(refusal(room + "joined = false\nrest_length = 1\n"), "no event joins this spring");
+  EXPECT_EQ(when("release = \"band\""), "");
+}
+
+}  // namespace
+}  // namespace obscura::scene
