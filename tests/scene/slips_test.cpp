@@ -135,5 +135,25 @@ TEST(Slips, APuckAcrossASlopeTurnsAsItStops) {
   }
 }
 
+// A wheel whose dry friction is just what drives it, and a bead on a wire that nothing presses, go on.
+TEST(Slips, WhatNothingAcceleratesGoesOn) {
+  for (const std::string mode : {"contact", "event"}) {
+    const std::string room =
+        "duration = 9\n[room]\nsize = [4, 4]\nwalls = \"none\"\ngravity = [0, 0]\n[physics]\ncollision = \"" +
+        mode + "\"\n";
+    const TextRun wheel(
+        room +
+        "[[ball]]\nname = \"w\"\nposition = [2, 2]\nradius = 0.5\nspin = 90\n[[joint]]\ntype = "
+        "\"pin\"\nbetween = [\"w\", \"room\"]\nfriction = 1\n[[force]]\nof = \"w\"\ntorque = "
+        "\"1\"\n");
+    EXPECT_NEAR(wheel.at(2).bodies[0].spin.z(), std::acos(0.0), 1e-12) << mode;
+    const TextRun bead(
+        room +
+        "[[particle]]\nname = \"w\"\nposition = [1, 2]\nvelocity = [0.5, 0]\n[[track]]\npoints = [[0, "
+        "2], [4, 2]]\nthread = [\"w\"]\nfriction = 0.3\n");
+    EXPECT_NEAR(bead.place(2).x(), 2, 1e-12) << mode;
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene
