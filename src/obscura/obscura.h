@@ -299,7 +299,8 @@ class World {
   /// The number of the body of a name. Throws UsageError, with the name that was probably meant.
   int body(std::string_view name) const;
 
-  // Columns are views of the state itself: they follow the world, and are good for as long as it is there.
+  // Columns are views of the state itself: they follow the world, and are good for as long as it is there. They
+  // are in the axes of the room, also where the scene has an observer.
   Columns positions() const;   ///< of centres of mass, m: a row a body
   Columns velocities() const;  ///< m/s: a row a body
   /// Of the bodies that turn, from first_turning() on: rad, not wrapped; in space quaternions x, y, z, w of

@@ -367,7 +367,7 @@ OBSCURA_COMMAND(60, states) {
       "the bit.\n"
       "A contact is between a body and a wall (floor, left, right, ceiling, then the scene's own: 0, 1, ...) "
       "or another body; the normal points to the body, and the force (N) and the impulse (N s) of the last "
-      "step act on it. A joint's force acts on its first body. at_rest: proved to stay.\n"
+      "step act on it. A joint's force acts on its first body; broken: it holds nothing, as it has broken, was let go or is not joined yet. at_rest: proved to stay.\n"
       "energy.displacement: what pushing bodies out of walls and each other has gained since the start; "
       "energy.impacts: what impacts of collision = \"handout\" have lost; energy.hand: in the springs of "
       "mice, "

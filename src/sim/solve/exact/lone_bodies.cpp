@@ -19,6 +19,7 @@ namespace {
 constexpr double kSpareWay = 1.1;
 constexpr double kNearby = 1e-6;        // of the room's size
 constexpr double kSlowApproach = 1e-9;  // of the room's size, 1/s: slower is no impact
+constexpr double kSlowTurn = 1e-6;      // of sqrt(g L): slower does not roll
 constexpr std::size_t kFew = 50000;     // couples to look at one by one
 
 }  // namespace
@@ -72,6 +73,26 @@ bool LoneBodies<D>::strikes(const State<D>& state, int body, double h) const {
   return false;
 }
 
+// Which roll or rock on walls or fixed bodies alone, so that the place where they touch moves in them: all
+// that turns but what is round about its centre of mass, whose contact stays below that.
+template <int D>
+void LoneBodies<D>::find_rolling(const State<D>& state) {
+  rolls_.assign(model_.bodies.size(), 0);
+  const auto alone = [&](int body) { return body < 0 || (model_.bodies[body].fixed && !carries_[body]); };
+  for (const Contact<D>& contact : state.contacts) {
+    const int a = contact.key.a, b = contact.key.b;
+    if (contact.touching == ContactMode::open) continue;
+    for (const auto& [body, other] : {std::pair(a, b), std::pair(b, a)}) {
+      if (body < 0) continue;
+      if (!alone(other)) rolls_[body] = 2;
+      const int k = turning(state, body);
+      if (rolls_[body] != 0 || k < 0 || round_radius(model_.bodies[body].shape)) continue;
+      const double skin = bounding_radius_[body] * std::sqrt(state.spin[k].squaredNorm());
+      if (skin > kSlowTurn * std::sqrt(g_ * model_.scale)) rolls_[body] = 1;
+    }
+  }
+}
+
 // leaves only candidates that no other body can reach
 template <int D>
 void LoneBodies<D>::leave_out_near(const State<D>& state) {
@@ -107,9 +128,10 @@ template <int D>
 void LoneBodies<D>::find(const State<D>& state, double t, double h) {
   candidates_.clear(), began_.clear();
   const int n = int(model_.bodies.size());
+  find_rolling(state);
   for (int i = 0; i < n; ++i) {
     const bool frozen = !state.frozen.empty() && state.frozen[i];
-    if (free_[i] && !frozen && strikes(state, i, h)) candidates_.push_back(i);
+    if (free_[i] && !frozen && (rolls_[i] == 1 || strikes(state, i, h))) candidates_.push_back(i);
   }
   for (const Grip<D>& grip : state.grips) std::erase(candidates_, grip.body);
   if (candidates_.empty()) return;

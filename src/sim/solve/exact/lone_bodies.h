@@ -40,6 +40,7 @@ class LoneBodies {
   };
 
   bool strikes(const State<D>& state, int body, double h) const;
+  void find_rolling(const State<D>& state);
   void leave_out_near(const State<D>& state);
   // whether a lone body must not meet this one
   bool meets(int body) const { return !model_.bodies[body].fixed || carries_[body]; }
@@ -51,6 +52,7 @@ class LoneBodies {
   std::vector<char> free_;                      // one a body: no joint, spring or pair force acts on it
   std::vector<char> still_;                     // one a body: it is not to be moved
   std::vector<char> moved_;                     // one a body
+  std::vector<char> rolls_;                     // one a body: 1 on what stands still, 2 on others, too
   std::vector<char> points_;                    // one a body
   std::vector<char> carries_;                   // one a body: it is kinematic or has a belt
   std::vector<int> fixed_;                      // bodies
