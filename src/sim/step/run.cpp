@@ -202,8 +202,15 @@ class RunOf final : public Run {
       joint.force = then.joints[i].force, joint.torque = then.joints[i].torque;
       joint.holds = then.joints[i].holds;
     }
-    for (std::size_t i = 0; i < now.bodies.size(); ++i)
-      now.bodies[i].held = then.bodies[i].held, now.bodies[i].torque = then.bodies[i].torque;
+    // what joints turn bodies by; other torques are known at the start
+    for (Vec<D>& force : copy_.joint_forces) force.setZero();
+    for (AngularVec<D>& torque : copy_.joint_torques) torque.setZero();
+    for (Wound& rope : copy_.wound) rope.drag = 0;
+    const Snapshot loose = snapshot(model_, copy_, *stepper_, {0, kFirst}, kFirst / value(model_.rate));
+    for (std::size_t i = 0; i < now.bodies.size(); ++i) {
+      now.bodies[i].held = then.bodies[i].held;
+      now.bodies[i].torque += then.bodies[i].torque - loose.bodies[i].torque;
+    }
     for (Snapshot::Contact each : then.contacts) {
       if (!each.holds || !each.impulse.isZero(0)) continue;
       now.contacts.push_back(each);

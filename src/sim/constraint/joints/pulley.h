@@ -82,13 +82,17 @@ inline RopeEnd rope_end(const JointPose<2>& at, bool first) {
   return {p.x + arm_p, q.x + arm_q, on_a - on_b, q.velocity(arm_q) - p.velocity(arm_p)};
 }
 
+inline constexpr double kAlong = 1e-6;  // of a speed's square: across the piece
+
 /// Whether the piece will have no length left within a time h, as the end is then on the rim of the wheel: on
 /// the straight way from here, (u + u' s)^2 = q^2. Or turns by more than a radian in it, as it is so short.
 inline bool runs_out(const RopeEnd& end, const RopePiece<2>& piece, double h) {
   if (!(piece.length > 0)) return true;
   const double l2 = piece.length * piece.length, along = (end.to - end.from).dot(end.rate);
+  // straight along the piece it comes to the rim where both times are one, but for rounding
   const double reach = along * along - l2 * end.rate.squaredNorm();
-  if (along < 0 && reach > 0 && l2 <= h * (std::sqrt(reach) - along)) return true;
+  if (along < 0 && reach > -kAlong * along * along && l2 <= h * (std::sqrt(std::max(0.0, reach)) - along))
+    return true;
   const double across = piece.direction[0] * end.rate[1] - piece.direction[1] * end.rate[0];
   return h * std::fabs(across) > piece.length;
 }

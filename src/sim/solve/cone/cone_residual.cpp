@@ -3,22 +3,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/solve/cone/cone.h"
 
 namespace obscura::sim {
+
+namespace {
+
+// smaller ones have no full precision: rounding would look like a violation
+constexpr double kLeast = std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
+// of the largest row: an equality solved with it is off by its rounding, however small its own numbers are
+constexpr double kRounded = 1e-4;
+
+}  // namespace
 
 template <int D>
 double Cone<D>::check(std::span<const ConeBlock<D>> blocks, std::span<const ConeMode<D>> modes) {
   better_.assign(modes.begin(), modes.end());
   wrong_.resize(blocks.size());
   double worst = 0;
+  const double rounded = n_ > 0 ? kRounded * *std::max_element(size_.begin(), size_.end()) : 0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const int row = first_[i];
-    double size = 0;
+    double size = blocks[i].law == Law::equal ? rounded : 0;
     for (int k = 0; k < blocks[i].rows(); ++k) size = std::max(size, size_[row + k]);
     const double wrong = check(blocks[i], modes[i], row, better_[i]) - sigma_[row] * negligible;
-    wrong_[i] = wrong > 0 ? wrong / size : wrong <= 0 ? 0 : wrong;  // not a number stays so
+    wrong_[i] = wrong > kLeast ? wrong / size : wrong <= kLeast ? 0 : wrong;  // not a number stays so
     if (!(wrong_[i] <= worst)) worst = wrong_[i];
   }
   return worst;

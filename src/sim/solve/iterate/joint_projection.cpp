@@ -182,7 +182,7 @@ void JointSolver<D>::finish(double h) {
     for (std::size_t r = 0; r < rows_.size(); ++r) totals_[r] += rhs_[r];
   }
   for (std::size_t k = 0; k < active_; ++k) bounded_[k].at_end += bounded_[k].impulse;
-  book();
+  book(h);
   for (std::size_t k = 0; k < active_; ++k) {
     const Bounded& bounded = bounded_[k];
     const double given = h * std::fabs(holds_[std::size_t(bounded.joint)].given[bounded.load]);
@@ -195,11 +195,15 @@ void JointSolver<D>::finish(double h) {
   }
 }
 
-// the work of kinematic bodies and motors: half of each impulse where the step began, half where it ends, but
-// those that the end itself gave
+// The work of kinematic bodies and motors: half of each impulse where the step began, half where it ends, but
+// those that the end itself gave. What motors gave in the free motion is booked by its rates: here what
+// contacts change of them, which is half of it in the mean.
 template <int D>
-void JointSolver<D>::book() {
+void JointSolver<D>::book(double h) {
   work_ = 0;
+  each_motor([&](std::size_t i, const Coordinate& its) {
+    work_ += 0.5 * h * holds_[i].given[motor] * (its.rate - free_motors_[i]);
+  });
   for (std::size_t r = 0; r < rows_.size() && driven_; ++r)
     work_ += 0.5 * totals_[r] * (begun_drive_works_[r] + drive_works_[r]);
   for (std::size_t k = 0; k < active_; ++k) {
@@ -270,7 +274,7 @@ bool JointSolver<D>::update_bounded(double h) {
   template void JointSolver<D>::project_positions(double); \
   template void JointSolver<D>::damped_newton();           \
   template void JointSolver<D>::finish(double);            \
-  template void JointSolver<D>::book();                    \
+  template void JointSolver<D>::book(double);              \
   template void JointSolver<D>::renew(Bounded&);           \
   template bool JointSolver<D>::update_bounded(double)
 OBSCURA_INSTANTIATE(2);

@@ -39,7 +39,8 @@ JointSolver<D>::JointSolver(const Model<D>& model)
   member_.assign(n, 0), component_of_body_.assign(n, -1);
   clear_pushed();
   at_.resize(n), turn_.resize(n), unprojected_.resize(n);
-  holds_.resize(model.joints.size()), begun_motors_.resize(model.joints.size());
+  holds_.resize(model.joints.size()), begun_motors_.resize(model.joints.size()),
+      free_motors_.resize(model.joints.size());
   for (Orientation<D>& turn : turn_) turn.setZero();
   for (const Joint<D>& joint : model.joints) {
     joint.each_body([&](int body) {

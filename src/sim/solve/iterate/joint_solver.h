@@ -245,7 +245,10 @@ class JointSolver final : public System {
   int bounded_row(int block) const { return factors_.first(block) + factors_.size(block) - 1; }
   void bounded_row(int block, Load load, Row<D>& row) const;
   void set_poses(const State<D>& state, double t);
+  template <class Act>
+  void each_motor(Act&& act);
   void begin_motors();
+  void end_motors();
   bool has_speed(int joint, double rate, double aimed, double h) const {
     return std::fabs(rate - aimed) <= kAims * (std::fabs(aimed) + h * h) + kArrives * size(joint);
   }
@@ -273,7 +276,7 @@ class JointSolver final : public System {
   bool near() const;
   void project_positions(double h);
   void damped_newton();
-  void book();
+  void book(double h);
 
   const Model<D>& model_;
   Motors<D> motors_;
@@ -346,7 +349,9 @@ class JointSolver final : public System {
   struct Coordinate {
     double value = 0, rate = 0;  // rad or m; a second
   };
-  std::vector<Coordinate> begun_motors_;  // one a joint: of those with a motor, where the step begins
+  // one a joint: of those with a motor, where the step begins, and the rate to which their free motion leads
+  std::vector<Coordinate> begun_motors_;
+  std::vector<double> free_motors_;
   std::vector<double> end_rates_;
   std::vector<Wrench<D>> end_loads_;  // of each joint of held_ at the end of the step, on a
   std::vector<Bounded> bounded_;      // the first `active_` are in use

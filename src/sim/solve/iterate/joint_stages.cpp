@@ -104,13 +104,13 @@ double JointSolver<D>::step(ForwardDynamics<D>& dynamics, Integrate* integrate, 
     done += until;
     if (stops) work += strike(state, t + done);
     if (h - done <= kNothingLeft * h) {
-      note_excess(t + h);
+      note_excess(t + h), end_motors();
       loosen_all();
       return work;
     }
     if (choose_holding(t + done, h)) work += strike(state, t + done), choose_holding(t + done, h);
   }
-  note_excess(t + h);
+  note_excess(t + h), end_motors();
   loosen_all();
   return work + given;
 }
@@ -370,17 +370,31 @@ void JointSolver<D>::restore(State<D>& state) const {
   }
 }
 
-// the coordinates of motors where the step begins
+// act(i, coordinate) for each joint with a motor that acts, at the poses at hand
 template <int D>
-void JointSolver<D>::begin_motors() {
+template <class Act>
+void JointSolver<D>::each_motor(Act&& act) {
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     const Joint<D>& joint = model_.joints[i];
     if (!joint.motor || broken_[i] || !moves(joint)) continue;
     Row<D> row;
     double value = 0;
     free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), row, value);
-    begun_motors_[i] = {value, speed(row, at_)};
+    act(i, Coordinate{value, speed(row, at_)});
   }
+}
+
+// the coordinates of motors where the step begins
+template <int D>
+void JointSolver<D>::begin_motors() {
+  each_motor(
+      [&](std::size_t i, const Coordinate& its) { begun_motors_[i] = its, free_motors_[i] = its.rate; });
+}
+
+// their rates where the free motion ends
+template <int D>
+void JointSolver<D>::end_motors() {
+  each_motor([&](std::size_t i, const Coordinate& its) { free_motors_[i] = its.rate; });
 }
 
 // J v'
