@@ -440,7 +440,7 @@ std::vector<Key> rows() {
        .doc = "Makes a joint or a spring that is not `joined` yet, by its name; or holds together two as they stand: bodies, or a body and a wall or `\"room\"`.", .example = "[\"bullet\", \"block\"]"},
       {.path = "when.do.stick", .form = boolean, .absent = "another action", .doc = "Those that have come to touch are held together as they stand; with `again` each two that do.", .example = "true"},
       {.path = "when.do.set", .form = text, .absent = "another action",
-       .doc = "Sets a key from now on, as `--set` writes it: of a motor (`flipper.motor.speed`), a force (`wind.components`, `room.wind`), `room.gravity`, `stiffness`, `damping` or `rest_length` of a spring, `fixed` of a body, or its `mass`: what comes or goes has its velocity.", .example = "\"piston.motor.speed\""},
+       .doc = "Sets a key from now on, as `--set` writes it: of a motor (`flipper.motor.speed`), a force (`wind.components`, `room.wind`), `room.gravity`, the `friction` of a joint, `stiffness`, `damping` or `rest_length` of a spring, or `fixed`, `velocity`, `spin`, `mass`, `charge`, `drag` or `quadratic_drag` of a body.", .example = "\"piston.motor.speed\""},
       {.path = "when.do.to", .form = any, .absent = "it sets nothing", .doc = "The value that it sets.", .example = "0"},
       {.path = "when.do.stop", .form = boolean, .absent = "another action", .doc = "Everything stands still from now on, and the film ends.", .example = "true"},
 

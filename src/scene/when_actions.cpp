@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "scene/path.h"
+#include "sim/constraint/joints/joint.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::scene {
@@ -307,8 +309,7 @@ class ActionBuilder {
     if (bonded(node.place)) return;
     if (const auto body = owner(path, "fixed"); body && names_.is_body(*body))
       return fix(node, *body, *to, when);
-    if (const auto body = owner(path, "mass"); body && names_.is_body(*body))
-      return weigh(node, *body, *to, when);
+    if (value_of_body(node, *to, when) || kick(node, *to, when)) return;
     if (spring(node, *to, when)) return;
     const auto steps = scene::path(path);
     const auto at = path.find(".motor");
@@ -322,6 +323,8 @@ class ActionBuilder {
       }
       return;
     }
+    if (const auto joint = owner(path, "friction"); joint && !names_.joints(*joint).empty())
+      return rub(node, *joint, *to, when);
     if (at != std::string::npos && (path.size() == at + 6 || path[at + 6] == '.'))
       return motor(node, path.substr(0, at), *to, when);
     const std::string name =
@@ -330,11 +333,13 @@ class ActionBuilder {
     std::vector<std::string_view> words;
     for (const sim::Joint<D>& joint : model_.joints)
       if (joint.motor) words.push_back(joint.name);
-    complaints_.add(node.place,
-                    fmt::format("'set': {} stays as it is while the room runs; events set motors "
-                                "(JOINT.motor.speed), forces (FORCE.components, room.wind), room.gravity, "
-                                "SPRING.stiffness, damping and rest_length, BODY.fixed and BODY.mass",
-                                scene::quoted(path)));
+    complaints_.add(
+        node.place,
+        fmt::format("'set': {} stays as it is while the room runs; events set motors "
+                    "(JOINT.motor.speed), JOINT.friction, forces (FORCE.components), room.wind, electric, "
+                    "magnetic and gravity, SPRING.stiffness, damping and rest_length, BODY.fixed, "
+                    "velocity, spin, mass, charge, drag and quadratic_drag",
+                    scene::quoted(path)));
   }
 
   void fix(const Node& node, const std::string& text, const Node& to, When& when) {
@@ -358,23 +363,107 @@ class ActionBuilder {
     if (!action.of.empty()) when.actions.push_back(std::move(action));
   }
 
-  void weigh(const Node& node, const std::string& text, const Node& to, When& when) {
+  // bodies that a key may be set of; none, and a complaint, where they are held, or links
+  std::vector<int> free_bodies(const Node& node, const std::string& text, const char* what) {
+    const std::vector<int> those = names_.roster.bodies(text, node.place, complaints_);
+    for (const int body : those) {
+      const sim::Body<D>& its = model_.bodies[std::size_t(body)];
+      if (!its.linked && moves(body)) continue;
+      complaints_.add(node.place, fmt::format("{} is {}, and {} stays", scene::quoted(its.name),
+                                              its.linked ? "a link of a [[chain]]" : "fixed", what));
+      return {};
+    }
+    return those;
+  }
+
+  // a number that bodies have; false: the key is another's
+  bool value_of_body(const Node& node, const Node& to, When& when) {
+    struct Key {
+      const char* name;
+      typename Change::Of of;
+      double sim::Body<D>::*value;
+      const char* what;
+    };
+    constexpr Key kKeys[] = {
+        {"mass", Change::Of::mass, &sim::Body<D>::mass, "its mass"},
+        {"charge", Change::Of::charge, &sim::Body<D>::charge, "its charge"},
+        {"drag", Change::Of::drag, &sim::Body<D>::drag, "its drag"},
+        {"quadratic_drag", Change::Of::quadratic_drag, &sim::Body<D>::quadratic_drag, "its drag"}};
+    for (const Key& key : kKeys) {
+      const auto name = owner(node.text(), key.name);
+      if (!name || !names_.is_body(*name)) continue;
+      const auto made = model_with(node, to);
+      if (!made) return true;
+      Action action{Do::change, "", {}};
+      for (const int body : free_bodies(node, *name, key.what)) {
+        Change change;
+        change.of = key.of, change.index = body, change.value = made->bodies[std::size_t(body)].*key.value;
+        action.of.push_back(number(std::move(change)));
+      }
+      if (!action.of.empty()) when.actions.push_back(std::move(action));
+      // a force that is not there yet acts on nothing
+      if (key.of == Change::Of::quadratic_drag && force_called(*made, "quadratic_drag") &&
+          !force_called(model_, "quadratic_drag"))
+        complaints_.add(node.place, "'set': start with a quadratic_drag of next to nothing, such as 1e-12");
+      return true;
+    }
+    return false;
+  }
+
+  // a velocity or a spin, from that instant on; false: the key is another's
+  bool kick(const Node& node, const Node& to, When& when) {
+    for (const bool turns : {false, true}) {
+      const auto name = owner(node.text(), turns ? "spin" : "velocity");
+      if (!name || !names_.is_body(*name)) continue;
+      const bool number_alone = turns && D == 2;
+      const bool good = number_alone ? to.is_number()
+                                     : to.is_list() && to.list().size() == D &&
+                                           std::all_of(to.list().begin(), to.list().end(),
+                                                       [](const Node& it) { return it.is_number(); });
+      if (!good) {
+        complaints_.add(to.place, fmt::format("{}: expected {}", scene::quoted(node.text()),
+                                              number_alone ? "degrees a second"
+                                              : D == 2     ? "[x, y]"
+                                                           : "[x, y, z]"));
+        return true;
+      }
+      Change change;
+      change.of = turns ? Change::Of::spin : Change::Of::velocity;
+      if (!turns)
+        change.velocity = vector<D>(to);
+      else if constexpr (D == 2)
+        change.spin[0] = to.number() * std::numbers::pi / 180;
+      else
+        change.spin = vector<D>(to) * (std::numbers::pi / 180);
+      Action action{Do::change, "", {}};
+      for (const int body : free_bodies(node, *name, "its velocity")) {
+        change.index = body;
+        action.of.push_back(this->number(change));
+      }
+      if (!action.of.empty()) when.actions.push_back(std::move(action));
+      return true;
+    }
+    return false;
+  }
+
+  // the dry friction of a pin, in space of a hinge, or of a slider
+  void rub(const Node& node, const std::string& text, const Node& to, When& when) {
     const auto made = model_with(node, to);
     if (!made) return;
     Action action{Do::change, "", {}};
-    for (const int body : names_.roster.bodies(text, node.place, complaints_)) {
-      const sim::Body<D>& its = model_.bodies[std::size_t(body)];
-      if (its.linked || !moves(body)) {
+    for (const int joint : names_.joints(text)) {
+      const sim::Joint<D>& its = made->joints[std::size_t(joint)];
+      if (!sim::has_free_row(its)) {
         complaints_.add(node.place,
-                        scene::quoted(its.name) + (its.linked ? " is a link of a [[chain]], whose mass stays"
-                                                              : " is fixed, and has no mass"));
+                        fmt::format("'set': the friction of {} stays as it is while the room runs",
+                                    scene::quoted(its.name)));
         return;
       }
       Change change;
-      change.of = Change::Of::mass, change.index = body, change.value = made->bodies[std::size_t(body)].mass;
+      change.of = Change::Of::rub, change.index = joint, change.value = its.friction;
       action.of.push_back(number(std::move(change)));
     }
-    if (!action.of.empty()) when.actions.push_back(std::move(action));
+    when.actions.push_back(std::move(action));
   }
 
   // a key of springs; false: it is another's

@@ -93,8 +93,8 @@ TEST(Changing, AMassIsSet) {
     EXPECT_NEAR(now.bodies[0].spin.z(), 100 * kSemicircle / 180, 1e-12) << manner.name;
     EXPECT_NEAR(now.angular_momentum.z(), 0.5 * 4 * 0.04 * 100 * kSemicircle / 180, 1e-9) << manner.name;
     EXPECT_EQ(sim::mass(run.run->scene_info(), now, 0), 4);
-    EXPECT_NEAR(now.energies.total() - now.energies.work, 2 + 0.5 * 0.02 * std::pow(100 * kSemicircle / 180, 2),
-                1e-8);
+    EXPECT_NEAR(now.energies.total() - now.energies.work,
+                2 + 0.5 * 0.02 * std::pow(100 * kSemicircle / 180, 2), 1e-8);
   }
 }
 
@@ -135,7 +135,8 @@ TEST(Changing, AGearEngages) {
       EXPECT_NEAR(now.bodies[a].spin.z(), 2 * kSemicircle / 3, 1e-8) << manner.name << dimension;
       EXPECT_NEAR(now.bodies[b].spin.z(), -kSemicircle / 3, 1e-8) << manner.name << dimension;
       if (dimension == 2) {
-        EXPECT_NEAR(now.bodies[a].angle + 2 * now.bodies[b].angle, 2 * kSemicircle * 1.3, 1e-6) << manner.name;
+        EXPECT_NEAR(now.bodies[a].angle + 2 * now.bodies[b].angle, 2 * kSemicircle * 1.3, 1e-6)
+            << manner.name;
       }
       EXPECT_NEAR(run.at(6).bodies[a].spin.z(), 2 * kSemicircle / 3, 1e-8) << manner.name << dimension;
     }
@@ -166,6 +167,57 @@ TEST(Changing, APulleyEngages) {
   }
 }
 
+// A kick gives a velocity or a spin at once; what holds a body answers in the same instant. Its work is
+// booked.
+TEST(Changing, AKickGivesAVelocity) {
+  for (const Manner& manner : kManners) {
+    const TextRun run(
+        plane_without_walls(manner, "gravity = [0, 0]") +
+        round_body("a", 2, 0.2, "position = [0, 0]\nvelocity = [1, 0]") +
+        round_body("b", 3, 0.2, "position = [0, 2]") +
+        "[[joint]]\ntype = \"rod\"\nbetween = [\"b\", [0, 4]]\n"
+        "[[when]]\ntime = 1\ndo = [{ set = \"a.velocity\", to = [0, 3] }, { set = \"a.spin\", to = 90 "
+        "}, { set = \"b.velocity\", to = [1, 5] }]\n");
+    EXPECT_NEAR(run.at(0.9).bodies[0].velocity.x(), 1, 1e-12) << manner.name;
+    const sim::Snapshot now = run.at(1.5);
+    EXPECT_NEAR((now.bodies[0].velocity - sim::Vec3(0, 3, 0)).norm(), 0, 1e-12) << manner.name;
+    EXPECT_NEAR((now.bodies[0].position - sim::Vec3(1, 1.5, 0)).norm(), 0, 1e-9) << manner.name;
+    EXPECT_NEAR(now.bodies[0].spin.z(), std::acos(0.0), 1e-12) << manner.name;
+    EXPECT_NEAR(now.bodies[1].velocity.norm(), 1, 1e-8) << manner.name;  // along the rod nothing is left
+    EXPECT_NEAR((now.bodies[1].position - sim::Vec3(2 * std::sin(0.25), 4 - 2 * std::cos(0.25), 0)).norm(), 0,
+                1e-7)
+        << manner.name;
+    const double spins = 0.5 * 0.5 * 2 * 0.04 * std::pow(std::acos(0.0), 2);
+    EXPECT_NEAR(now.energies.total(), 9 + spins + 1.5, 1e-7) << manner.name;
+  }
+  const TextRun space(space_without_walls(kManners[1], "gravity = [0, 0, 0]") +
+                      "[[box]]\nname = \"c\"\nsize = [1, 2, 3]\nposition = [0, 0, 0]\nspin = [10, 20, 30]\n"
+                      "[[when]]\ntime = 1\ndo = [{ set = \"c.spin\", to = [0, 0, 180] }]\n");
+  const sim::Vec3 before = space.at(0.5).angular_momentum, after = space.at(1).angular_momentum;
+  EXPECT_GT((before - after).norm(), 1e-3);
+  EXPECT_NEAR((space.at(1).bodies[0].spin - sim::Vec3(0, 0, std::acos(-1.0))).norm(), 0, 1e-11);
+  EXPECT_NEAR((space.at(4).angular_momentum - after).norm(), 0, 1e-9);
+}
+
+// Charge and drag are those of the event from then on; a clutch grips by its friction.
+TEST(Changing, ChargeDragAndTheFrictionOfAJointAreSet) {
+  for (const Manner& manner : kManners) {
+    const TextRun charge(plane_without_walls(manner, "gravity = [0, 0]\nelectric = [2, 0]") +
+                         round_body("a", 1, 0.2, "position = [0, 0]\ncharge = 1") +
+                         "[[when]]\ntime = 1\ndo = [{ set = \"a.charge\", to = -1 }]\n");
+    EXPECT_NEAR(charge.at(1.5).bodies[0].velocity.x(), 2 - 1, 1e-9) << manner.name;
+    const TextRun drag(plane_without_walls(manner, "gravity = [0, 0]") +
+                       round_body("a", 2, 0.2, "position = [0, 0]\nvelocity = [1, 0]") +
+                       "[[when]]\ntime = 1\ndo = [{ set = \"a.drag\", to = 3 }]\n");
+    EXPECT_NEAR(drag.at(2).bodies[0].velocity.x(), std::exp(-1.5), 1e-8) << manner.name;
+    const TextRun clutch(plane_without_walls(manner, "gravity = [0, 0]") +
+                         round_body("a", 1, 0.4, "position = [0, 0]\nspin = 1080") +
+                         "[[joint]]\nname = \"brake\"\ntype = \"pin\"\nbetween = [\"a\", \"room\"]\n"
+                         "[[when]]\ntime = 1\ndo = [{ set = \"brake.friction\", to = 0.4 }]\n");
+    EXPECT_NEAR(clutch.at(2).bodies[0].spin.z(), 6 * kSemicircle - 0.4 / 0.08, 1e-7) << manner.name;
+  }
+}
+
 TEST(Changing, WhatCannotBeChangedIsRefused) {
   const std::string room = plane_without_walls(kManners[0]) +
                            round_body("a", 1, 0.3, "position = [-2, 0.25]") +
@@ -177,8 +229,10 @@ TEST(Changing, WhatCannotBeChangedIsRefused) {
   const auto expect = [](const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
   };
-  expect(when("set = \"c.mass\", to = 2"), "'c' is fixed, and has no mass");
+  expect(when("set = \"c.mass\", to = 2"), "'c' is fixed, and its mass stays");
   expect(when("set = \"a.mass\", to = -2"), "mass");
+  expect(when("set = \"a.velocity\", to = 2"), "'a.velocity': expected [x, y]");
+  expect(when("set = \"a.spin\", to = [1, 2]"), "'a.spin': expected degrees a second");
   expect(when("set = \"band.stiffness\", to = -2"), "stiffness");
   expect(when("set = \"a.radius\", to = 2"), "SPRING.stiffness");
   expect(when("release = \"bend\""), "no body, joint or spring is called 'bend'; did you mean 'band'?");

@@ -190,5 +190,34 @@ TEST(Impacts, OfFiveElasticitiesAreAsManyAsTheClosedFormHas) {
   }
 }
 
+// Two rods on hinges, or on welds and sliders of one more, swing in a plane of space against a post. What is
+// across that plane is as small as rounding, 1e-320 and less; all else keeps its energy, as by ball joints.
+TEST(Impacts, HingesInSpaceKeepTheirEnergy) {
+  for (const std::string mode : {"contact", "event"}) {
+    for (const std::string second : {"hinge", "weld"}) {
+      const auto rod = [](int i) {
+        return fmt::format(
+            "[[box]]\nname = \"b{0}\"\nsize = [0.5, 0.05, 0.05]\nmass = 1\nposition = [{1}, 3, "
+            "0]\nelasticity = "
+            "1\nfriction = 0\n",
+            i, 0.25 + 0.5 * i);
+      };
+      const TextRun run(
+          "duration = 9\n[room]\nsize = [4, 4, 4]\nwalls = \"none\"\n[physics]\ncollision = \"" + mode +
+          "\"\n" + rod(0) + rod(1) +
+          "[[joint]]\ntype = \"hinge\"\nbetween = [\"b0\", \"room\"]\nat = [0, 3, 0]\n[[joint]]\ntype = \"" +
+          second +
+          "\"\nbetween = [\"b1\", \"b0\"]\nat = [0.5, 3, 0]\n[contact]\nignore = [[\"b0\", "
+          "\"b1\"]]\n[[box]]\nname "
+          "= \"post\"\nsize = [0.1, 0.1, 0.3]\nposition = [-0.2, 2.3, 0]\nfixed = true\nelasticity = "
+          "1\nfriction = "
+          "0\n");
+      const double begun = run.at(0).energies.total();
+      for (const double t : {1.0, 4.0, 8.0})
+        EXPECT_NEAR(run.at(t).energies.total(), begun, 1e-7) << mode << second << t;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

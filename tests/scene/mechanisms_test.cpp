@@ -720,5 +720,42 @@ TEST(Pulley, PiecesAreNumberedFromTheFirstEnd) {
   }
 }
 
+// A car whose motors turn light wheels: their work is what it moves with, though within a step they would
+// turn the wheels far faster than the road lets them.
+TEST(Mechanisms, AMotorsWorkIsWhatTheCarMovesWith) {
+  for (const Manner& manner : kManners) {
+    for (const int rate : {60, 600}) {
+      const TextRun run(
+          "duration = 9\n[room]\nsize = [30, 4]\nwalls = \"ground\"\n" + manner.keys +
+          fmt::format("\nrate = {}\n", rate) +
+          "[[box]]\nname = \"car\"\nsize = [2, 0.3]\nmass = 6\nposition = [5, 0.4]\nelasticity = 0\n"
+          "[[ball]]\nname = \"wheel\"\nradius = 0.2\nmass = 0.05\nposition = [4.2, 0.2]\ncopies = { count = "
+          "2, offset = "
+          "[1.6, 0] }\nfriction = 0.8\nelasticity = 0\n[[joint]]\ntype = \"pin\"\nbetween = [{ body = "
+          "\"wheel[0..1]\", at = \"center\" }, \"car\"]\nmotor = { speed = -1e6, most = 0.5 }\n");
+      const sim::Snapshot now = run.at(2);
+      EXPECT_NEAR(now.energies.work, now.energies.kinetic, 1e-4) << manner.name << rate;
+    }
+  }
+}
+
+// A weight that goes straight up to the rim of its wheel, on either side.
+TEST(Mechanisms, ARopeThatEndsAtTheRimEndsTheRun) {
+  for (const double side : {1.0, -1.0}) {
+    for (const std::string friction : {"", "friction = 0.1\n"}) {
+      const TextRun run(
+          plane_without_walls(kManners[0]) +
+          "[[ball]]\nname = \"w\"\nradius = 0.3\nmass = 1\nposition = [0, 0]\n" +
+          (friction.empty() ? "[[joint]]\ntype = \"pin\"\nbetween = [\"w\", \"room\"]\n" : "fixed = true\n") +
+          fmt::format("[[particle]]\nname = \"a\"\nmass = 5\nposition = [{}, -1]\n[[particle]]\nname = "
+                      "\"b\"\nmass = 1\nposition = [{}, -1]\n",
+                      -0.3 * side, 0.3 * side) +
+          "[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [\"a\", \"b\"]\nover = [\"w\"]\n" +
+          friction + "[contact]\nignore = [[\"w\", \"a\"], [\"w\", \"b\"]]\n");
+      EXPECT_THROW(run.at(2), std::runtime_error) << side << friction;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

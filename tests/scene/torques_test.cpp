@@ -139,5 +139,16 @@ TEST(Torques, AreRefusedWhereNothingTurns) {
        "no body would feel the opposite");
 }
 
+// At the start, where no step has been taken, it is that of the start.
+TEST(Torques, AreThoseOfTheStartThere) {
+  for (const int rate : {30, 600}) {
+    const TextRun run(
+        plane_without_walls(kManners[0], "gravity = [0, 0]") + fmt::format("rate = {}\n", rate) +
+        "[[ball]]\nname = \"b\"\nmass = 2\ninertia = 0.1\nspin = 180\nposition = [0, 0]\n[[force]]\nof = "
+        "\"b\"\ntorque = \"-2*spin\"\n");
+    EXPECT_NEAR(run.at(0).bodies[0].torque.z(), -2 * std::acos(-1.0), 1e-12) << rate;
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

@@ -345,12 +345,31 @@ struct Articulation {
 /// A change of the room that an event makes, for the rest of the run.
 template <int D>
 struct Change {
-  enum class Of { hold, motor, gravity, force, join, loose, stiffness, damping, rest_length, mass };
+  enum class Of {
+    hold,
+    motor,
+    gravity,
+    force,
+    join,
+    loose,  // and other values of a spring
+    stiffness,
+    damping,
+    rest_length,
+    mass,  // and other values of a body
+    charge,
+    drag,
+    quadratic_drag,
+    rub,       // the dry friction of a joint
+    velocity,  // these two at that instant alone
+    spin
+  };
   Of of = Of::hold;
-  // of the body that is held where it is or changes its mass, the joint that gets a motor or is made, the
+  // of the body that is held where it is or gets another value, the joint that gets one or is made, the
   // force, or the spring
   int index = -1;
-  double value = 0;  // of a spring, SI units, loose or not; of a body, kg: its inertia goes with it
+  double value = 0;                            // SI units; of `loose` whether it is
+  Vec<D> velocity = Vec<D>::Zero();            // m/s
+  AngularVec<D> spin = AngularVec<D>::Zero();  // rad/s, in space in the room's axes
   typename Joint<D>::Motor motor;
   Vec<D> gravity = Vec<D>::Zero();
   std::shared_ptr<const Force<D>> force;

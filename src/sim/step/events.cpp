@@ -22,16 +22,35 @@ constexpr int kMostCuts = 1000;     // of a step
 constexpr std::size_t kMostHappenings = 100'000;
 constexpr double kTouchingGap = 1e-9;  // of the room's height: what touches at the start
 
-// gives a body another mass, and moments of inertia in proportion
+// gives a body another value, forces that act on it too; with a mass moments of inertia in proportion
 template <int D>
-void weigh(Model<D>& model, int body, double mass) {
-  Body<D>& its = model.bodies[std::size_t(body)];
-  its.inertia *= mass / its.mass;
-  its.mass = mass;
+void give_body(Model<D>& model, const Change<D>& change) {
+  using Of = typename Change<D>::Of;
+  const auto give = [&](auto& it) {
+    switch (change.of) {
+      case Of::mass:
+        it.mass = change.value;
+        break;
+      case Of::charge:
+        it.charge = change.value;
+        break;
+      case Of::drag:
+        it.drag = change.value;
+        break;
+      case Of::quadratic_drag:
+        it.quadratic_drag = change.value;
+        break;
+      default:
+        break;
+    }
+  };
+  Body<D>& its = model.bodies[std::size_t(change.index)];
+  if (change.of == Of::mass) its.inertia *= change.value / its.mass;
+  give(its);
   for (Force<D>& force : model.forces) {
     for (Subject<D>& subject : force.subjects)
-      if (subject.body == body) subject.mass = mass;
-    if (force.center && force.center->body == body) force.center->mass = mass;
+      if (subject.body == change.index) give(subject);
+    if (force.center && force.center->body == change.index) give(*force.center);
   }
 }
 
@@ -140,15 +159,19 @@ void Events<D>::make(const State<D>& state) {
       case Change<D>::Of::rest_length:
         now_.springs[std::size_t(change.index)].rest_length = change.value;
         break;
-      case Change<D>::Of::mass:
-        break;  // below: forces have masses, too
+      case Change<D>::Of::rub:
+        now_.joints[std::size_t(change.index)].friction = change.value;
+        break;
+      default:
+        break;  // of bodies, below: forces have them, too; or of an instant
     }
   }
   for (Spring<D>& spring : now_.springs)
     if (spring.loose) spring.stiffness = spring.damping = 0;
   for (const int number : made_changes_) {
     const Change<D>& change = model_.changes[std::size_t(number)];
-    if (change.of == Change<D>::Of::mass) weigh(now_, change.index, change.value);
+    if (change.of >= Change<D>::Of::mass && change.of <= Change<D>::Of::quadratic_drag)
+      give_body(now_, change);
   }
   probes_ =
       model_.bonds.empty() && (now_.collision == Collision::event ||
@@ -403,6 +426,11 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
           const Change<D>& made = model_.changes[std::size_t(of)];
           const bool joins = made.of == Change<D>::Of::join;
           if (joins && !state.broken[std::size_t(made.index)]) break;
+          if (made.of == Change<D>::Of::velocity || made.of == Change<D>::Of::spin) {
+            kick(state, made);
+            joined = true;  // what holds the body answers at once
+            break;
+          }
           std::erase_if(changes, [&](int c) { return model_.changes[std::size_t(c)].replaces(made); });
           changes.push_back(of);
           if (joins) {
@@ -429,6 +457,17 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
   std::fill(state.quiet.begin(), state.quiet.end(), 0.0);
   stepper_->begin_anew(state, t);
   if (joined) jerk(state, at.fraction, t);
+}
+
+// gives a body another velocity or spin
+template <int D>
+void Events<D>::kick(State<D>& state, const Change<D>& by) {
+  if (now_.bodies[std::size_t(by.index)].fixed) return;
+  if (by.of == Change<D>::Of::velocity) {
+    state.v[std::size_t(by.index)] = by.velocity;
+  } else if (const int k = turning(state, by.index); k >= 0) {
+    state.spin[std::size_t(k)] = by.spin;
+  }
 }
 
 // a joint holds from now on, and may break again; or has been let go, which is no break
