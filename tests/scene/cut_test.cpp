@@ -65,7 +65,7 @@ void expect_only_losses(const sim::World<D>& world, double slack) {
     size += body.fixed ? 0 : body.mass * model.gravity.norm() * model.scale;
   // beside the booked work of pushing overlaps apart, and of belts
   const auto own = [&](const sim::Energies& now) {
-    return now.total() - state.ledger.displacement - (belts ? now.work : 0);
+    return now.total() - state.ledger.displacement - (belts || model.changed ? now.work : 0);
   };
   double before = own(sim::energies(model, state, stepper.paths(), 0)), worst = 0;
   int at = 0;
@@ -73,7 +73,7 @@ void expect_only_losses(const sim::World<D>& world, double slack) {
     const bool was = driven();
     ASSERT_FALSE(stepper.step(state)) << i;
     const sim::Energies now =
-        sim::energies(model, state, stepper.paths(), double(state.step) / value(model.rate));
+        sim::energies(stepper.model(state), state, stepper.paths(), double(state.step) / value(model.rate));
     const double left = own(now);
     if (!was && !driven() && left - before > worst * (size + now.kinetic))
       worst = (left - before) / (size + now.kinetic), at = i;

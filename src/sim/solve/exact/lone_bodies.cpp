@@ -20,6 +20,7 @@ constexpr double kSpareWay = 1.1;
 constexpr double kNearby = 1e-6;        // of the room's size
 constexpr double kSlowApproach = 1e-9;  // of the room's size, 1/s: slower is no impact
 constexpr double kSlowTurn = 1e-6;      // of sqrt(g L): slower does not roll
+constexpr double kInside = 1e-5;        // of its bounding radius: more than iterations leave
 constexpr std::size_t kFew = 50000;     // couples to look at one by one
 
 }  // namespace
@@ -84,7 +85,8 @@ void LoneBodies<D>::find_rolling(const State<D>& state) {
     if (contact.touching == ContactMode::open) continue;
     for (const auto& [body, other] : {std::pair(a, b), std::pair(b, a)}) {
       if (body < 0) continue;
-      if (!alone(other)) rolls_[body] = 2;
+      // and what lies in another is put out of it by the iterations
+      if (!alone(other) || contact.gap < -kInside * bounding_radius_[body]) rolls_[body] = 2;
       const int k = turning(state, body);
       if (rolls_[body] != 0 || k < 0 || round_radius(model_.bodies[body].shape)) continue;
       const double skin = bounding_radius_[body] * std::sqrt(state.spin[k].squaredNorm());
