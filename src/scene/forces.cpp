@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 
 #include "scene/fields.h"
 #include "scene/links.h"
+#include "scene/when_names.h"
 #include "sim/force/formula.h"
 
 namespace obscura::scene {
@@ -29,6 +31,7 @@ class ForceBuilder {
       : top_(top), constants_(constants), roster_(roster), world_(world), complaints_(complaints) {
     for (const sim::Drive<D>& drive : world.model.drives)
       if (drive.release || drive.by_event) released_.insert(drive.body);
+    each_action(top, [&](const Node& action) { note_set(action); });
   }
 
   void build() {
@@ -41,6 +44,20 @@ class ForceBuilder {
   using Force = sim::Force<D>;
   using Subject = sim::Subject<D>;
   using On = typename Force::On;
+
+  // a body whose charge or drag an event sets: fields act on it though it may have none at the start
+  void note_set(const Node& action) {
+    const Node* set = action.find("set");
+    if (!set || !set->is_text()) return;
+    for (auto& [key, those] : given_later_) {
+      const std::string& text = set->text();
+      if (!text.ends_with(key)) continue;
+      Diagnostics elsewhere("", {});  // the condition tells of it
+      for (const int body : roster_.bodies(text.substr(0, text.size() - key.size()), set->place, elsewhere))
+        those.insert(body);
+    }
+  }
+  bool gets(const char* key, int body) const { return given_later_.at(key).count(body) > 0; }
 
   template <class Build>
   void each(const std::string& kind, Build&& build) {
@@ -301,7 +318,7 @@ class ForceBuilder {
   // what the room has everywhere
   void room() {
     const Fields fields = Fields::of(top_, "room");
-    const auto charged = [](const Subject& it) { return it.charge != 0; };
+    const auto charged = [&](const Subject& it) { return it.charge != 0 || gets(".charge", it.body); };
     for (const bool masses : {true, false}) {
       const char* key = masses ? "gravitation" : "coulomb";
       if (fields.number(key) == 0) continue;
@@ -324,7 +341,8 @@ class ForceBuilder {
     }
     magnetic(fields.node("magnetic", D), all_that(charged));
     air(wind, all_that([&](const Subject& it) {
-          return it.quadratic_drag > 0 || (it.drag > 0 && !wind.isZero(0));
+          return it.quadratic_drag > 0 || gets(".quadratic_drag", it.body) ||
+                 ((it.drag > 0 || gets(".drag", it.body)) && !wind.isZero(0));
         }));
     if (const Node* fluid = fields.given("fluid")) float_in(Fields(*fluid, "room.fluid"));
   }
@@ -389,6 +407,7 @@ class ForceBuilder {
   sim::World<D>& world_;
   Diagnostics& complaints_;
   std::set<int> released_;  // bodies that are fixed until they are let go
+  std::map<std::string, std::set<int>> given_later_{{".charge", {}}, {".drag", {}}, {".quadratic_drag", {}}};
 };
 
 }  // namespace

@@ -401,10 +401,6 @@ class ActionBuilder {
         action.of.push_back(number(std::move(change)));
       }
       if (!action.of.empty()) when.actions.push_back(std::move(action));
-      // a force that is not there yet acts on nothing
-      if (key.of == Change::Of::quadratic_drag && force_called(*made, "quadratic_drag") &&
-          !force_called(model_, "quadratic_drag"))
-        complaints_.add(node.place, "'set': start with a quadratic_drag of next to nothing, such as 1e-12");
       return true;
     }
     return false;

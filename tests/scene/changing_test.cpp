@@ -190,6 +190,23 @@ TEST(Changing, AKickGivesAVelocity) {
     const double spins = 0.5 * 0.5 * 2 * 0.04 * std::pow(std::acos(0.0), 2);
     EXPECT_NEAR(now.energies.total(), 9 + spins + 1.5, 1e-7) << manner.name;
   }
+  for (const std::string actions :
+       {"{ release = \"c\" }, { set = \"c.velocity\", to = [1, 0] }",
+        "{ set = \"c.velocity\", to = [1, 0] }, { set = \"c.fixed\", to = false }"}) {
+    const TextRun let_go(plane_without_walls(kManners[0], "gravity = [0, 0]") +
+                         round_body("c", 2, 0.2, "position = [0, 0]\nfixed = true") +
+                         "[[when]]\ntime = 1\ndo = [" + actions + "]\n");
+    EXPECT_NEAR(let_go.place(2).x(), 1, 1e-9) << actions;
+  }
+  // a bar on a hinge takes what its hinge lets it: 3/4 of the energy of its middle at 3 m/s
+  const TextRun bar(
+      plane_without_walls(kManners[0], "gravity = [0, 0]") +
+      "[[box]]\nname = \"c\"\nsize = [1, 0.1]\nmass = 2\nposition = [0.5, 0]\n[[joint]]\ntype = "
+      "\"pin\"\nbetween = [\"c\", \"room\"]\nat = [0, 0]\n"
+      "[[when]]\ntime = 1\ndo = [{ set = \"c.velocity\", to = [0, 3] }]\n");
+  const sim::Snapshot after_kick = bar.at(2);
+  EXPECT_NEAR(after_kick.energies.work, after_kick.energies.kinetic, 1e-9);
+  EXPECT_NEAR(after_kick.bodies[0].spin.z(), 2 * 3 * 0.5 / (2 * (1 + 0.01) / 12 + 2 * 0.25), 1e-9);
   const TextRun space(space_without_walls(kManners[1], "gravity = [0, 0, 0]") +
                       "[[box]]\nname = \"c\"\nsize = [1, 2, 3]\nposition = [0, 0, 0]\nspin = [10, 20, 30]\n"
                       "[[when]]\ntime = 1\ndo = [{ set = \"c.spin\", to = [0, 0, 180] }]\n");
@@ -206,6 +223,22 @@ TEST(Changing, ChargeDragAndTheFrictionOfAJointAreSet) {
                          round_body("a", 1, 0.2, "position = [0, 0]\ncharge = 1") +
                          "[[when]]\ntime = 1\ndo = [{ set = \"a.charge\", to = -1 }]\n");
     EXPECT_NEAR(charge.at(1.5).bodies[0].velocity.x(), 2 - 1, 1e-9) << manner.name;
+    // one that has none at the start, in a field and in the wind
+    const TextRun none(plane_without_walls(manner, "gravity = [0, 0]\nelectric = [2, 0]") +
+                       round_body("a", 1, 0.2, "position = [0, 0]") +
+                       "[[when]]\ntime = 1\ndo = [{ set = \"a.charge\", to = 3 }]\n");
+    EXPECT_NEAR(none.at(2).bodies[0].velocity.x(), 6, 1e-9) << manner.name;
+    for (const std::string key : {"drag", "quadratic_drag"}) {
+      const TextRun wind(plane_without_walls(manner, "gravity = [0, 0]\nwind = [1, 0]") +
+                         round_body("a", 2, 0.2, "position = [0, 0]\nvelocity = [1, 0]") +
+                         round_body("b", 2, 0.2, "position = [0, 5]") +
+                         "[[when]]\ntime = 1\ndo = [{ set = \"a." + key + "\", to = 3 }, { set = \"b." + key +
+                         "\", to = 2 }]\n");
+      const sim::Snapshot now = wind.at(2);
+      EXPECT_NEAR(now.bodies[0].velocity.x(), 1, 1e-9) << manner.name << key;
+      EXPECT_NEAR(now.bodies[1].velocity.x(), key == "drag" ? 1 - std::exp(-1.0) : 0.5, 1e-7)
+          << manner.name << key;
+    }
     const TextRun drag(plane_without_walls(manner, "gravity = [0, 0]") +
                        round_body("a", 2, 0.2, "position = [0, 0]\nvelocity = [1, 0]") +
                        "[[when]]\ntime = 1\ndo = [{ set = \"a.drag\", to = 3 }]\n");

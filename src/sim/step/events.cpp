@@ -391,6 +391,7 @@ bool Events<D>::act(State<D>& state, const Found& found, TimeStamp at) {
 template <int D>
 void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeStamp at) {
   bool any = false, joined = false;
+  std::vector<const Change<D>*> kicks;
   for (const auto& [action, which] : actions) {
     if (action->what == Action::Do::stop) state.events.stopped = 1;
     any = any || (action->what != Action::Do::stop && action->what != Action::Do::mark);
@@ -427,8 +428,7 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
           const bool joins = made.of == Change<D>::Of::join;
           if (joins && !state.broken[std::size_t(made.index)]) break;
           if (made.of == Change<D>::Of::velocity || made.of == Change<D>::Of::spin) {
-            kick(state, made);
-            joined = true;  // what holds the body answers at once
+            kicks.push_back(&made);
             break;
           }
           std::erase_if(changes, [&](int c) { return model_.changes[std::size_t(c)].replaces(made); });
@@ -451,12 +451,19 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
   }
   if (!state.broken.empty()) break_dependents(model_, state.broken);
   make(state);
-  if (!state.work.empty())
-    state.work[0] += energies(stepper_->model(state), state, stepper_->paths(), t).total() - before;
+  // of what is free now
+  for (const Change<D>* by : kicks) kick(state, *by);
+  const auto given = [&] {
+    return energies(stepper_->model(state), state, stepper_->paths(), t).total() - before;
+  };
+  const double worked = state.work.empty() ? 0 : state.work[0];
+  if (!state.work.empty()) state.work[0] += given();
   std::fill(state.frozen.begin(), state.frozen.end(), 0);
   std::fill(state.quiet.begin(), state.quiet.end(), 0.0);
   stepper_->begin_anew(state, t);
-  if (joined) jerk(state, at.fraction, t);
+  if (joined || !kicks.empty()) jerk(state, at.fraction, t);
+  // a kick works as far as what holds the body lets it
+  if (!joined && !kicks.empty() && !state.work.empty()) state.work[0] = worked + given();
 }
 
 // gives a body another velocity or spin
