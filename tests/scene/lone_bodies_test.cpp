@@ -120,5 +120,19 @@ TEST(LoneBodies, ForceOfABoxThatHasComeToRestIsItsWeight) {
   }
 }
 
+// A roly-poly that the iterative solver is named for, and one among bodies that it moves: it keeps its swing.
+TEST(LoneBodies, ARolyPolyKeepsItsSwing) {
+  for (const double radius : {0.3, 0.05}) {
+    const TextRun run(fmt::format(
+        "duration = 99\n[room]\nsize = [4, 2]\nfriction = 0.8\nelasticity = 0\n[physics]\ncollision = "
+        "\"contact\"\nsolver = \"iterative\"\nrate = 60\n[[ball]]\nposition = [2, {0}]\nradius = "
+        "{0}\nmass = 1\nangle = 20\ncenter_of_mass = [0, {1}]\n",
+        radius, -radius / 3));
+    const double begun = run.at(0).energies.total(),
+                 least = 9.81 * radius * 2 / 3;  // upright: all of the swing is above that
+    EXPECT_NEAR(run.at(30).energies.total() - least, begun - least, 0.01 * (begun - least)) << radius;
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

@@ -114,6 +114,8 @@ std::function<double(const sim::Snapshot&)> reader(const Question& asked, const 
   // the parts of the potential energy
   more.push_back("energy.gravity"), more.push_back("energy.springs");
   if (asked.path == "energy.gravity") return [](const sim::Snapshot& now) { return now.energies.gravity; };
+  // of a room whose books have none it is zero
+  if (asked.path == "energy.work") return [](const sim::Snapshot& now) { return now.energies.work; };
   if (asked.path == "energy.springs") return [](const sim::Snapshot& now) { return now.energies.springs; };
   // how much a joint bears
   for (std::size_t i = 0; i < cast.joints.size(); ++i) {
