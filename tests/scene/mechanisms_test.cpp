@@ -757,5 +757,23 @@ TEST(Mechanisms, ARopeThatEndsAtTheRimEndsTheRun) {
   }
 }
 
+// A belt from one wheel to a larger one: both turn the same way, and it pushes no axle aside.
+TEST(Mechanisms, ABeltTurnsBothWheelsTheSameWay) {
+  for (const Manner& manner : kManners) {
+    const TextRun run(
+        plane_without_walls(manner, "gravity = [0, 0]") +
+        "[[ball]]\nname = \"a\"\nradius = 0.2\nmass = 1\nposition = [-1, 0]\n[[ball]]\nname = "
+        "\"b\"\nradius = 0.6\nmass = 2\nposition = [1, 0.3]\n[[joint]]\nname = \"p\"\ntype = "
+        "\"pin\"\nbetween = [\"a\", \"room\"]\n[[joint]]\nname = \"q\"\ntype = \"pin\"\nbetween = "
+        "[\"b\", \"room\"]\n[[joint]]\nname = \"belt\"\ntype = \"gear\"\njoints = [\"p\", "
+        "\"q\"]\nratio = 3\n[[force]]\nof = \"a\"\ntorque = \"0.1\"\n");
+    const sim::Snapshot now = run.at(2);
+    const double alpha = 0.1 / (0.5 * 0.04 + 0.5 * 2 * 0.36 / 9);
+    EXPECT_NEAR(now.bodies[0].spin.z(), 2 * alpha, 1e-8) << manner.name;
+    EXPECT_NEAR(now.bodies[1].spin.z(), 2 * alpha / 3, 1e-8) << manner.name;
+    EXPECT_NEAR(now.bodies[0].held.norm() + now.bodies[1].held.norm(), 0, 1e-8) << manner.name;
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

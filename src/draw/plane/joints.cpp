@@ -355,7 +355,41 @@ void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, L
   }
 }
 
+namespace {
+
+// Belts: around two wheels, along the two lines that both have on one side. Their radii are negative.
+void draw_belts(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  constexpr double kArcPiece = 0.05;  // rad
+  std::vector<Node> nodes;
+  for (std::size_t i = 0; i < now.joints.size(); ++i) {
+    const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
+    if (joint_look(joint.kind).plane != JointMark::teeth || now.joints[i].broken ||
+        joint.places.size() != 4 || !(joint.offset_a < 0 && joint.offset_b < 0))
+      continue;
+    const Vec3 one = place_of(now, joint.places[0]), other = place_of(now, joint.places[2]);
+    const double far = (other - one).norm();
+    const Vec3 u = (other - one) / far, across(-u.y(), u.x(), 0);
+    const double turn = std::acos(std::clamp((joint.offset_b - joint.offset_a) / far, -1.0, 1.0));
+    nodes.clear();
+    const auto arc = [&](const Vec3& center, double radius, double from, double to) {
+      const int pieces = std::max(1, int(std::ceil((to - from) / kArcPiece)));
+      for (int k = 0; k <= pieces; ++k) {
+        const double angle = from + (to - from) * k / pieces;
+        nodes.push_back({view.page(center + radius * (std::cos(angle) * u + std::sin(angle) * across)),
+                         kRope * stage.layout.weight, stage.colours.spring});
+      }
+    };
+    arc(one, -joint.offset_a, turn, kRound - turn), arc(other, -joint.offset_b, -turn, turn);
+    nodes.push_back(nodes.front());
+    list.of({Subject::What::joint, int(i)});
+    list.add(nodes, Cap::round);
+  }
+}
+
+}  // namespace
+
 void draw_pulleys(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  draw_belts(stage, view, now, list);
   const double weight = stage.layout.weight;
   const Color color = stage.colours.spring;
   std::vector<Node> nodes;
