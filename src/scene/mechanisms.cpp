@@ -381,15 +381,15 @@ void gear(const Fields& fields, const std::string& name, sim::World<D>& world, D
     if (body < 0) return direction;
     return sim::rotation<D>(turn_of(world, body)).transpose() * direction;
   };
-  // two wheels apart whose radii have the ratio: no teeth, but a belt around both; written as negative radii
+  // two wheels apart whose radii have the ratio: no teeth, but a belt around both
   const auto wheel = [&](int body) {
     return D == 2 && body >= 0 ? sim::round_radius(world.model.bodies[std::size_t(body)].shape).value_or(0)
                                : 0;
   };
   const double r1 = wheel(both[0].a.body), r2 = wheel(both[1].a.body);
-  const bool belt = pins && n > 0 && r1 > 0 && std::fabs(n * r1 - r2) <= kBelt * r2 && far > r1 + r2;
-  if (belt) {
-    it.on_a.offset = -r1, it.on_b.offset = -r2;
+  it.belt = pins && n > 0 && r1 > 0 && std::fabs(n * r1 - r2) <= kBelt * r2 && far > r1 + r2;
+  if (it.belt) {
+    it.on_a.offset = r1, it.on_b.offset = r2;
     if (const Node* breaks = fields.given("breaks"))
       complaints.add(breaks->place, "this gear is a belt, which turns wheels; 'breaks_torque' breaks it");
   } else if (pins && far > 0 && n != 1) {

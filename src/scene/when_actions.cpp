@@ -1,13 +1,10 @@
 #include "scene/when_actions.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <numbers>
 
-#include "scene/path.h"
-#include "sim/constraint/joints/joint.h"
+#include "scene/when_changes.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::scene {
@@ -16,47 +13,6 @@ namespace {
 
 constexpr std::size_t kMostSticking = 20'000;                                             // pairs
 constexpr std::string_view kTaken[] = {"end", "max", "min", "mean", "argmax", "argmin"};  // of --measure
-
-// a value as TOML
-std::string toml(const Node& node) {
-  if (node.is_text()) {
-    std::string text = "\"";
-    for (const char c : node.text()) {
-      if (c == '"' || c == '\\') text += '\\';
-      text += c;
-    }
-    return text + "\"";
-  }
-  if (node.is_integer()) return fmt::format("{}", std::get<std::int64_t>(node.value));
-  if (node.is_number()) {
-    std::string text = fmt::format("{}", node.number());
-    return text.find_first_of(".einf") == std::string::npos ? text + ".0" : text;
-  }
-  if (const bool* flag = std::get_if<bool>(&node.value)) return *flag ? "true" : "false";
-  std::vector<std::string> parts;
-  if (node.is_list()) {
-    for (const Node& each : node.list()) parts.push_back(toml(each));
-    return fmt::format("[{}]", fmt::join(parts, ", "));
-  }
-  if (!node.is_table()) return "\"\"";
-  for (const Entry& each : node.table()) parts.push_back(each.key + " = " + toml(each.node));
-  return fmt::format("{{{}}}", fmt::join(parts, ", "));
-}
-
-// what a path ends with, and what is before it: "gate[2]" of "gate[2].fixed"
-std::optional<std::string> owner(const std::string& path, std::string_view key) {
-  const std::string end = "." + std::string(key);
-  if (path.size() <= end.size() || !path.ends_with(end)) return {};
-  return path.substr(0, path.size() - end.size());
-}
-
-// the number of the drive of a body that is fixed or moved, or -1
-template <int D>
-int drive_of(const sim::Model<D>& model, int body) {
-  for (std::size_t i = 0; i < model.drives.size(); ++i)
-    if (model.drives[i].body == body) return int(i);
-  return -1;
-}
 
 template <int D>
 class ActionBuilder {
@@ -73,7 +29,8 @@ class ActionBuilder {
         world_(world),
         model_(world.model),
         glued_(glued),
-        complaints_(complaints) {}
+        complaints_(complaints),
+        changes_(names, world, complaints) {}
 
   void actions(const Fields& fields, When& when) {
     const Node* all = fields.given("do");
@@ -104,7 +61,7 @@ class ActionBuilder {
       if (release) let_go(*release, release->text(), when);
       if (join) this->join(*join, when);
       if (stick) this->stick(*stick, when);
-      if (set) this->set(*set, to, when);
+      if (set) setting(*set, to, rebuild_, changes_, when);
     }
   }
 
@@ -127,20 +84,11 @@ class ActionBuilder {
     when.actions.push_back({Do::stop, "", {}});
   }
 
-  bool bonded(Place place) {
-    if (model_.bonds.empty()) return false;
-    complaints_.add(place,
-                    "events of a scene with [[bond]]s mark and stop; they do not release or set yet; a "
-                    "[[joint]] of type \"weld\" with 'breaks' holds two bodies together");
-    return true;
-  }
-
   void let_go(const Node& node, const std::string& text, When& when) {
-    if (bonded(node.place)) return;
+    if (changes_.bonded(node.place)) return;
     if (!names_.is_body(text)) {
       Action action{Do::part, "", names_.joints(text)};
-      if (action.of.empty() && changed_springs(Change::Of::loose, names_.springs_called(text), 1, when))
-        return;
+      if (action.of.empty() && loosen(names_.springs_called(text), true, when)) return;
       if (action.of.empty()) {
         std::vector<std::string_view> names;
         for (const Group& group : names_.roster.groups) names.push_back(group.name);
@@ -159,30 +107,20 @@ class ActionBuilder {
       when.actions.push_back(std::move(action));
       return;
     }
-    Action action{Do::let_go, "", {}};
-    for (const int body : names_.roster.bodies(text, node.place, complaints_)) {
-      const int drive = drive_of(model_, body);
-      if (drive >= 0) action.of.push_back(drive);
-    }
-    if (!action.of.empty()) when.actions.push_back(std::move(action));
+    changes_.let_go(node.place, text, when);
   }
 
-  // gives springs a value each; false where there are none
-  bool changed_springs(typename Change::Of of, const std::vector<int>& those, double value, When& when) {
-    Action action{Do::change, "", {}};
-    for (const int spring : those) {
-      Change change;
-      change.of = of, change.index = spring, change.value = value;
-      action.of.push_back(number(std::move(change)));
-    }
-    if (!those.empty()) when.actions.push_back(std::move(action));
-    return !those.empty();
+  // lets go of springs, or joins them; false where there are none
+  bool loosen(const std::vector<int>& those, bool loose, When& when) {
+    std::vector<Change> all;
+    for (const int spring : those) all.push_back(changes_.of(Change::Of::loose, spring, loose));
+    return changes_.give(all, when);
   }
 
   // makes joints or joins springs of a name, or holds together two sides, one each or each with the one
   void join(const Node& node, When& when) {
-    if (node.is_text() && names_.joints(node.text()).empty() && !bonded(node.place) &&
-        changed_springs(Change::Of::loose, names_.springs_called(node.text()), 0, when))
+    if (node.is_text() && names_.joints(node.text()).empty() && !changes_.bonded(node.place) &&
+        loosen(names_.springs_called(node.text()), false, when))
       return;
     if (no_joining(node.place)) return;
     if (node.is_text()) {
@@ -217,7 +155,7 @@ class ActionBuilder {
     Action action{Do::change, "", {}};
     for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
       const int one = a[a.size() == 1 ? 0 : i], other = b[b.size() == 1 ? 0 : i];
-      if (one == other || !(moves(one) || moves(other))) {
+      if (one == other || !(changes_.moves(one) || changes_.moves(other))) {
         complaints_.add(node.place,
                         one == other ? fmt::format("'join': both are {}", scene::quoted(named(one)))
                                      : fmt::format("'join': neither {} nor {} moves",
@@ -247,12 +185,12 @@ class ActionBuilder {
     }
     Action action{Do::change, "", {}, true};
     for (const auto& [a, b] : when.pairs)
-      action.of.push_back(moves(a) || moves(b) ? joining(glued(a, b)) : -1);
+      action.of.push_back(changes_.moves(a) || changes_.moves(b) ? joining(glued(a, b)) : -1);
     when.actions.push_back(std::move(action));
   }
 
   bool no_joining(Place place) {
-    if (bonded(place)) return true;
+    if (changes_.bonded(place)) return true;
     if (model_.collision != sim::Collision::handout) return false;
     complaints_.add(place,
                     "collision = \"handout\" knows no joints; write collision = \"contact\" or \"event\"");
@@ -265,9 +203,6 @@ class ActionBuilder {
     return names_.side(node);
   }
 
-  bool moves(int body) const {
-    return body >= 0 && (!model_.bodies[std::size_t(body)].fixed || drive_of(model_, body) >= 0);
-  }
   std::string named(int body) const { return body < 0 ? "the room" : model_.bodies[std::size_t(body)].name; }
 
   // A joint that an event makes of two, so that nothing moves between them: a weld; of what does not turn a
@@ -294,275 +229,7 @@ class ActionBuilder {
   }
 
   // the number of the change that makes a joint
-  int joining(int joint) {
-    Change change;
-    change.of = Change::Of::join, change.index = joint;
-    return number(std::move(change));
-  }
-
-  void set(const Node& node, const Node* to, When& when) {
-    const std::string& path = node.text();
-    if (!to) {
-      complaints_.add(node.place, fmt::format("'set' needs 'to', the new value of {}", scene::quoted(path)));
-      return;
-    }
-    if (bonded(node.place)) return;
-    if (const auto body = owner(path, "fixed"); body && names_.is_body(*body))
-      return fix(node, *body, *to, when);
-    if (value_of_body(node, *to, when) || kick(node, *to, when)) return;
-    if (spring(node, *to, when)) return;
-    const auto steps = scene::path(path);
-    const auto at = path.find(".motor");
-    const std::string first = path.substr(0, path.find('.'));
-    if (path == "room.gravity" || path.starts_with("room.gravity.")) {
-      if (const auto made = model_with(node, *to)) {
-        Change change;
-        change.of = Change::Of::gravity, change.gravity = made->gravity;
-        give(std::move(change), when);
-        // the fluid's buoyancy follows from it by itself
-      }
-      return;
-    }
-    if (const auto joint = owner(path, "friction"); joint && !names_.joints(*joint).empty())
-      return rub(node, *joint, *to, when);
-    if (at != std::string::npos && (path.size() == at + 6 || path[at + 6] == '.'))
-      return motor(node, path.substr(0, at), *to, when);
-    const std::string name =
-        first == "room" && steps && steps->size() > 1 ? "room." + (*steps)[1].name : first;
-    if (steps && is_force(name)) return force(node, name, *to, when);
-    std::vector<std::string_view> words;
-    for (const sim::Joint<D>& joint : model_.joints)
-      if (joint.motor) words.push_back(joint.name);
-    complaints_.add(
-        node.place,
-        fmt::format("'set': {} stays as it is while the room runs; events set motors "
-                    "(JOINT.motor.speed), JOINT.friction, forces (FORCE.components), room.wind, electric, "
-                    "magnetic and gravity, SPRING.stiffness, damping and rest_length, BODY.fixed, "
-                    "velocity, spin, mass, charge, drag and quadratic_drag",
-                    scene::quoted(path)));
-  }
-
-  void fix(const Node& node, const std::string& text, const Node& to, When& when) {
-    const bool* flag = std::get_if<bool>(&to.value);
-    if (!flag) {
-      complaints_.add(to.place, "'fixed' is true or false");
-      return;
-    }
-    if (!*flag) return let_go(node, text, when);
-    Action action{Do::change, "", {}};
-    for (const int body : names_.roster.bodies(text, node.place, complaints_)) {
-      if (model_.bodies[std::size_t(body)].linked) {
-        complaints_.add(node.place, fmt::format("{} is a link of a [[chain]], which events do not fix",
-                                                scene::quoted(model_.bodies[std::size_t(body)].name)));
-        return;
-      }
-      Change change;
-      change.index = body;
-      action.of.push_back(number(std::move(change)));
-    }
-    if (!action.of.empty()) when.actions.push_back(std::move(action));
-  }
-
-  // bodies that a key may be set of; none, and a complaint, where they are held, or links
-  std::vector<int> free_bodies(const Node& node, const std::string& text, const char* what) {
-    const std::vector<int> those = names_.roster.bodies(text, node.place, complaints_);
-    for (const int body : those) {
-      const sim::Body<D>& its = model_.bodies[std::size_t(body)];
-      if (!its.linked && moves(body)) continue;
-      complaints_.add(node.place, fmt::format("{} is {}, and {} stays", scene::quoted(its.name),
-                                              its.linked ? "a link of a [[chain]]" : "fixed", what));
-      return {};
-    }
-    return those;
-  }
-
-  // a number that bodies have; false: the key is another's
-  bool value_of_body(const Node& node, const Node& to, When& when) {
-    struct Key {
-      const char* name;
-      typename Change::Of of;
-      double sim::Body<D>::*value;
-      const char* what;
-    };
-    constexpr Key kKeys[] = {
-        {"mass", Change::Of::mass, &sim::Body<D>::mass, "its mass"},
-        {"charge", Change::Of::charge, &sim::Body<D>::charge, "its charge"},
-        {"drag", Change::Of::drag, &sim::Body<D>::drag, "its drag"},
-        {"quadratic_drag", Change::Of::quadratic_drag, &sim::Body<D>::quadratic_drag, "its drag"}};
-    for (const Key& key : kKeys) {
-      const auto name = owner(node.text(), key.name);
-      if (!name || !names_.is_body(*name)) continue;
-      const auto made = model_with(node, to);
-      if (!made) return true;
-      Action action{Do::change, "", {}};
-      for (const int body : free_bodies(node, *name, key.what)) {
-        Change change;
-        change.of = key.of, change.index = body, change.value = made->bodies[std::size_t(body)].*key.value;
-        action.of.push_back(number(std::move(change)));
-      }
-      if (!action.of.empty()) when.actions.push_back(std::move(action));
-      return true;
-    }
-    return false;
-  }
-
-  // a velocity or a spin, from that instant on; false: the key is another's
-  bool kick(const Node& node, const Node& to, When& when) {
-    for (const bool turns : {false, true}) {
-      const auto name = owner(node.text(), turns ? "spin" : "velocity");
-      if (!name || !names_.is_body(*name)) continue;
-      const bool number_alone = turns && D == 2;
-      const bool good = number_alone ? to.is_number()
-                                     : to.is_list() && to.list().size() == D &&
-                                           std::all_of(to.list().begin(), to.list().end(),
-                                                       [](const Node& it) { return it.is_number(); });
-      if (!good) {
-        complaints_.add(to.place, fmt::format("{}: expected {}", scene::quoted(node.text()),
-                                              number_alone ? "degrees a second"
-                                              : D == 2     ? "[x, y]"
-                                                           : "[x, y, z]"));
-        return true;
-      }
-      Change change;
-      change.of = turns ? Change::Of::spin : Change::Of::velocity;
-      if (!turns)
-        change.velocity = vector<D>(to);
-      else if constexpr (D == 2)
-        change.spin[0] = to.number() * std::numbers::pi / 180;
-      else
-        change.spin = vector<D>(to) * (std::numbers::pi / 180);
-      Action action{Do::change, "", {}};
-      for (const int body : free_bodies(node, *name, "its velocity")) {
-        change.index = body;
-        action.of.push_back(this->number(change));
-      }
-      if (!action.of.empty()) when.actions.push_back(std::move(action));
-      return true;
-    }
-    return false;
-  }
-
-  // the dry friction of a pin, in space of a hinge, or of a slider
-  void rub(const Node& node, const std::string& text, const Node& to, When& when) {
-    const auto made = model_with(node, to);
-    if (!made) return;
-    Action action{Do::change, "", {}};
-    for (const int joint : names_.joints(text)) {
-      const sim::Joint<D>& its = made->joints[std::size_t(joint)];
-      if (!sim::has_free_row(its)) {
-        complaints_.add(node.place,
-                        fmt::format("'set': the friction of {} stays as it is while the room runs",
-                                    scene::quoted(its.name)));
-        return;
-      }
-      Change change;
-      change.of = Change::Of::rub, change.index = joint, change.value = its.friction;
-      action.of.push_back(number(std::move(change)));
-    }
-    when.actions.push_back(std::move(action));
-  }
-
-  // a key of springs; false: it is another's
-  bool spring(const Node& node, const Node& to, When& when) {
-    struct Key {
-      const char* name;
-      typename Change::Of of;
-      double sim::Spring<D>::*value;
-    };
-    constexpr Key kKeys[] = {{"stiffness", Change::Of::stiffness, &sim::Spring<D>::stiffness},
-                             {"damping", Change::Of::damping, &sim::Spring<D>::damping},
-                             {"rest_length", Change::Of::rest_length, &sim::Spring<D>::rest_length}};
-    for (const Key& key : kKeys) {
-      const auto name = owner(node.text(), key.name);
-      const std::vector<int> those = name ? names_.springs_called(*name) : std::vector<int>();
-      if (those.empty()) continue;
-      const auto made = model_with(node, to);
-      for (const int spring : those)
-        if (made) changed_springs(key.of, {spring}, made->springs[std::size_t(spring)].*key.value, when);
-      return true;
-    }
-    return false;
-  }
-
-  void motor(const Node& node, const std::string& text, const Node& to, When& when) {
-    const std::vector<int> those = names_.joints(text);
-    if (those.empty()) {
-      complaints_.add(node.place, names_.unknown_joint(text));
-      return;
-    }
-    const auto made = model_with(node, to);
-    if (!made) return;
-    Action action{Do::change, "", {}};
-    for (const int joint : those) {
-      const auto& its = made->joints[std::size_t(joint)].motor;
-      if (!its) {
-        complaints_.add(node.place, fmt::format("{} has no motor", scene::quoted(text)));
-        return;
-      }
-      Change change;
-      change.of = Change::Of::motor, change.index = joint, change.motor = *its;
-      action.of.push_back(number(std::move(change)));
-    }
-    when.actions.push_back(std::move(action));
-  }
-
-  bool is_force(const std::string& name) const {
-    if (name == "room.wind" || name == "room.electric" || name == "room.magnetic") return true;
-    for (const char* kind : {"force", "attractor"}) {
-      const Node* all = names_.top.find(kind);
-      for (std::size_t k = 0; all && k < all->list().size(); ++k) {
-        const Node* its = all->list()[k].find("name");
-        if (name == (its ? its->text() : fmt::format("{}[{}]", kind, k))) return true;
-      }
-    }
-    return false;
-  }
-
-  static const sim::Force<D>* force_called(const sim::Model<D>& model, const std::string& name) {
-    for (const sim::Force<D>& force : model.forces)
-      if (force.name == name) return &force;
-    return nullptr;
-  }
-
-  void force(const Node& node, const std::string& name, const Node& to, When& when) {
-    const auto made = model_with(node, to);
-    if (!made) return;
-    if (name == "room.wind" &&
-        (force_called(model_, "quadratic_drag") || force_called(*made, "quadratic_drag"))) {
-      complaints_.add(node.place,
-                      "'set': without wind at the start drag is one force, and with it another; "
-                      "start with a wind of next to nothing, such as [1e-9, 0]");
-      return;
-    }
-    const sim::Force<D>* then = force_called(*made, name);
-    if (!then && !force_called(model_, name)) return;  // of nothing, before and after
-    Change change;
-    change.of = Change::Of::force;
-    if (!force_called(model_, name)) {
-      // not there yet: on nothing
-      sim::Force<D> none = *then;
-      none.subjects.clear();
-      model_.forces.push_back(std::move(none));
-    }
-    for (int k = 0; k < int(model_.forces.size()); ++k)
-      if (model_.forces[std::size_t(k)].name == name) change.index = k;
-    sim::Force<D> its = then ? *then : model_.forces[std::size_t(change.index)];
-    if (!then) its.subjects.clear();
-    change.force = std::make_shared<const sim::Force<D>>(std::move(its));
-    give(std::move(change), when);
-  }
-
-  std::optional<sim::Model<D>> model_with(const Node& node, const Node& to) {
-    return rebuild_(node.text() + "=" + toml(to), node.place, complaints_);
-  }
-
-  int number(Change change) {
-    model_.changes.push_back(std::move(change));
-    return int(model_.changes.size()) - 1;
-  }
-  void give(Change change, When& when) {
-    when.actions.push_back({Do::change, "", {number(std::move(change))}});
-  }
+  int joining(int joint) { return changes_.number(changes_.of(Change::Of::join, joint)); }
 
   const WhenNames<D>& names_;
   const Rebuild<D>& rebuild_;
@@ -570,6 +237,7 @@ class ActionBuilder {
   sim::Model<D>& model_;
   Glued& glued_;
   Diagnostics& complaints_;
+  Changes<D> changes_;
 };
 
 }  // namespace

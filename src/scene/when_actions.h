@@ -1,12 +1,9 @@
 #pragma once
 
-#include <functional>
 #include <map>
-#include <optional>
-#include <string>
 #include <utility>
 
-#include "scene/when_names.h"
+#include "scene/when_settings.h"
 #include "sim/model/state.h"
 
 namespace obscura::scene {
@@ -14,12 +11,6 @@ namespace obscura::scene {
 /// Makes the bodies that [[when]] lets go ready for it. Before forces, which leave out what never moves.
 template <int D>
 void ready_to_let_go(const Node& top, const NameTable& roster, sim::World<D>& world, Diagnostics& complaints);
-
-/// The model of the same scene with one more key set; none, and a complaint at the place, where that is
-/// wrong.
-template <int D>
-using Rebuild =
-    std::function<std::optional<sim::Model<D>>(const std::string& set, Place place, Diagnostics& complaints)>;
 
 /// The joints that `join` and `stick` make of two bodies: each two have one.
 using Glued = std::map<std::pair<int, int>, int>;

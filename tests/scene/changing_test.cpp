@@ -8,10 +8,6 @@ namespace {
 
 constexpr double kSemicircle = 3.14159265358979323846;
 
-std::string round_body(const std::string& name, double mass, double radius, const std::string& more) {
-  return fmt::format("[[ball]]\nname = \"{}\"\nmass = {}\nradius = {}\n{}\n", name, mass, radius, more);
-}
-
 const std::string kSemicirclens =
     "[[joint]]\nname = \"p\"\ntype = \"{0}\"\nbetween = [\"a\", \"room\"]\n"
     "[[joint]]\nname = \"q\"\ntype = \"{0}\"\nbetween = [\"b\", \"room\"]\n";
@@ -23,10 +19,9 @@ TEST(Changing, ASpringIsLetGo) {
     for (const int dimension : {2, 3}) {
       const std::string third = dimension == 3 ? ", 0" : "";
       const TextRun run(
-          (dimension == 2 ? plane_without_walls(manner, "gravity = [0, 0]")
-                          : space_without_walls(manner, "gravity = [0, 0, 0]")) +
-          "rate = 600\n" + round_body("a", 1, 0.1, "position = [0, 0" + third + "]") +
-          round_body("b", 3, 0.1, "position = [0.5, 0" + third + "]") +
+          empty_room(manner, dimension) + "rate = 600\n" +
+          disc("a", 1, 0.1, "position = [0, 0" + third + "]") +
+          disc("b", 3, 0.1, "position = [0.5, 0" + third + "]") +
           "[[spring]]\nname = \"band\"\nbetween = [\"a\", \"b\"]\nstiffness = 100\nrest_length = 1\n"
           "[[when]]\nvalue = \"b.x - a.x > 1\"\ndo = [{ release = \"band\" }]\n");
       const std::size_t a = number_of(run, "a"), b = number_of(run, "b");
@@ -83,7 +78,7 @@ TEST(Changing, ASpringIsJoinedAndSet) {
 TEST(Changing, AMassIsSet) {
   for (const Manner& manner : kManners) {
     const TextRun run(plane_without_walls(manner, "gravity = [0, 0]") +
-                      round_body("b", 1, 0.2, "position = [1, 0]\nspin = 100") +
+                      disc("b", 1, 0.2, "position = [1, 0]\nspin = 100") +
                       "[[spring]]\nbetween = [\"b\", [0, 0]]\nstiffness = 4\nrest_length = 0\n"
                       "[[when]]\ntime = 1\ndo = [{ set = \"b.mass\", to = 4 }]\n");
     const double x = std::cos(2.0), v = -2 * std::sin(2.0);
@@ -119,12 +114,11 @@ TEST(Changing, AGearEngages) {
     for (const int dimension : {2, 3}) {
       const std::string third = dimension == 3 ? ", 0" : "";
       const TextRun run(
-          (dimension == 2 ? plane_without_walls(manner, "gravity = [0, 0]")
-                          : space_without_walls(manner, "gravity = [0, 0, 0]")) +
-          round_body("a", 1, 0.2,
-                     "position = [0, 0" + third +
-                         "]\nrotation = true\nspin = " + (dimension == 2 ? "360" : "[0, 0, 360]")) +
-          round_body("b", 2, 0.4, "position = [0.6, 0" + third + "]\nrotation = true") +
+          empty_room(manner, dimension) +
+          disc("a", 1, 0.2,
+               "position = [0, 0" + third +
+                   "]\nrotation = true\nspin = " + (dimension == 2 ? "360" : "[0, 0, 360]")) +
+          disc("b", 2, 0.4, "position = [0.6, 0" + third + "]\nrotation = true") +
           fmt::format(fmt::runtime(kSemicirclens), dimension == 2 ? "pin" : "hinge") +
           "[[joint]]\nname = \"g\"\ntype = \"gear\"\njoints = [\"p\", \"q\"]\nratio = -2\njoined = false\n"
           "[[when]]\ntime = 1.3\ndo = [{ join = \"g\" }]\n"
@@ -148,9 +142,9 @@ TEST(Changing, AGearEngages) {
 TEST(Changing, APulleyEngages) {
   for (const Manner& manner : kManners) {
     for (const bool wheel : {false, true}) {
-      const TextRun run(plane_without_walls(manner) + round_body("a", 3, 0.1, "position = [-0.3, -5]") +
-                        round_body("b", 1, 0.1, "position = [0.3, -5]") +
-                        round_body("w", 2, 0.3, "position = [0, 0]\nrotation = true") +
+      const TextRun run(plane_without_walls(manner) + disc("a", 3, 0.1, "position = [-0.3, -5]") +
+                        disc("b", 1, 0.1, "position = [0.3, -5]") +
+                        disc("w", 2, 0.3, "position = [0, 0]\nrotation = true") +
                         "[[joint]]\ntype = \"pin\"\nbetween = [\"w\", \"room\"]\n"
                         "[[joint]]\nname = \"rope\"\ntype = \"pulley\"\nbetween = [\"a\", \"b\"]\nover = " +
                         (wheel ? "[\"w\"]" : "[[-0.3, 0], [0.3, 0]]") +
@@ -173,8 +167,7 @@ TEST(Changing, AKickGivesAVelocity) {
   for (const Manner& manner : kManners) {
     const TextRun run(
         plane_without_walls(manner, "gravity = [0, 0]") +
-        round_body("a", 2, 0.2, "position = [0, 0]\nvelocity = [1, 0]") +
-        round_body("b", 3, 0.2, "position = [0, 2]") +
+        disc("a", 2, 0.2, "position = [0, 0]\nvelocity = [1, 0]") + disc("b", 3, 0.2, "position = [0, 2]") +
         "[[joint]]\ntype = \"rod\"\nbetween = [\"b\", [0, 4]]\n"
         "[[when]]\ntime = 1\ndo = [{ set = \"a.velocity\", to = [0, 3] }, { set = \"a.spin\", to = 90 "
         "}, { set = \"b.velocity\", to = [1, 5] }]\n");
@@ -194,8 +187,8 @@ TEST(Changing, AKickGivesAVelocity) {
        {"{ release = \"c\" }, { set = \"c.velocity\", to = [1, 0] }",
         "{ set = \"c.velocity\", to = [1, 0] }, { set = \"c.fixed\", to = false }"}) {
     const TextRun let_go(plane_without_walls(kManners[0], "gravity = [0, 0]") +
-                         round_body("c", 2, 0.2, "position = [0, 0]\nfixed = true") +
-                         "[[when]]\ntime = 1\ndo = [" + actions + "]\n");
+                         disc("c", 2, 0.2, "position = [0, 0]\nfixed = true") + "[[when]]\ntime = 1\ndo = [" +
+                         actions + "]\n");
     EXPECT_NEAR(let_go.place(2).x(), 1, 1e-9) << actions;
   }
   // a bar on a hinge takes what its hinge lets it: 3/4 of the energy of its middle at 3 m/s
@@ -220,31 +213,30 @@ TEST(Changing, AKickGivesAVelocity) {
 TEST(Changing, ChargeDragAndTheFrictionOfAJointAreSet) {
   for (const Manner& manner : kManners) {
     const TextRun charge(plane_without_walls(manner, "gravity = [0, 0]\nelectric = [2, 0]") +
-                         round_body("a", 1, 0.2, "position = [0, 0]\ncharge = 1") +
+                         disc("a", 1, 0.2, "position = [0, 0]\ncharge = 1") +
                          "[[when]]\ntime = 1\ndo = [{ set = \"a.charge\", to = -1 }]\n");
     EXPECT_NEAR(charge.at(1.5).bodies[0].velocity.x(), 2 - 1, 1e-9) << manner.name;
     // one that has none at the start, in a field and in the wind
     const TextRun none(plane_without_walls(manner, "gravity = [0, 0]\nelectric = [2, 0]") +
-                       round_body("a", 1, 0.2, "position = [0, 0]") +
+                       disc("a", 1, 0.2, "position = [0, 0]") +
                        "[[when]]\ntime = 1\ndo = [{ set = \"a.charge\", to = 3 }]\n");
     EXPECT_NEAR(none.at(2).bodies[0].velocity.x(), 6, 1e-9) << manner.name;
     for (const std::string key : {"drag", "quadratic_drag"}) {
       const TextRun wind(plane_without_walls(manner, "gravity = [0, 0]\nwind = [1, 0]") +
-                         round_body("a", 2, 0.2, "position = [0, 0]\nvelocity = [1, 0]") +
-                         round_body("b", 2, 0.2, "position = [0, 5]") +
-                         "[[when]]\ntime = 1\ndo = [{ set = \"a." + key + "\", to = 3 }, { set = \"b." + key +
-                         "\", to = 2 }]\n");
+                         disc("a", 2, 0.2, "position = [0, 0]\nvelocity = [1, 0]") +
+                         disc("b", 2, 0.2, "position = [0, 5]") + "[[when]]\ntime = 1\ndo = [{ set = \"a." +
+                         key + "\", to = 3 }, { set = \"b." + key + "\", to = 2 }]\n");
       const sim::Snapshot now = wind.at(2);
       EXPECT_NEAR(now.bodies[0].velocity.x(), 1, 1e-9) << manner.name << key;
       EXPECT_NEAR(now.bodies[1].velocity.x(), key == "drag" ? 1 - std::exp(-1.0) : 0.5, 1e-7)
           << manner.name << key;
     }
     const TextRun drag(plane_without_walls(manner, "gravity = [0, 0]") +
-                       round_body("a", 2, 0.2, "position = [0, 0]\nvelocity = [1, 0]") +
+                       disc("a", 2, 0.2, "position = [0, 0]\nvelocity = [1, 0]") +
                        "[[when]]\ntime = 1\ndo = [{ set = \"a.drag\", to = 3 }]\n");
     EXPECT_NEAR(drag.at(2).bodies[0].velocity.x(), std::exp(-1.5), 1e-8) << manner.name;
     const TextRun clutch(plane_without_walls(manner, "gravity = [0, 0]") +
-                         round_body("a", 1, 0.4, "position = [0, 0]\nspin = 1080") +
+                         disc("a", 1, 0.4, "position = [0, 0]\nspin = 1080") +
                          "[[joint]]\nname = \"brake\"\ntype = \"pin\"\nbetween = [\"a\", \"room\"]\n"
                          "[[when]]\ntime = 1\ndo = [{ set = \"brake.friction\", to = 0.4 }]\n");
     EXPECT_NEAR(clutch.at(2).bodies[0].spin.z(), 6 * kSemicircle - 0.4 / 0.08, 1e-7) << manner.name;
@@ -252,9 +244,8 @@ TEST(Changing, ChargeDragAndTheFrictionOfAJointAreSet) {
 }
 
 TEST(Changing, WhatCannotBeChangedIsRefused) {
-  const std::string room = plane_without_walls(kManners[0]) +
-                           round_body("a", 1, 0.3, "position = [-2, 0.25]") +
-                           round_body("c", 1, 0.3, "position = [2, 0]\nfixed = true") +
+  const std::string room = plane_without_walls(kManners[0]) + disc("a", 1, 0.3, "position = [-2, 0.25]") +
+                           disc("c", 1, 0.3, "position = [2, 0]\nfixed = true") +
                            "[[spring]]\nname = \"band\"\nbetween = [\"a\", \"c\"]\n";
   const auto when = [&](const std::string& more) {
     return refusal(room + "[[when]]\ntime = 1\ndo = [{ " + more + " }]\n");

@@ -8,10 +8,6 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-std::string disc(const std::string& name, double mass, double radius, const std::string& more) {
-  return fmt::format("[[ball]]\nname = \"{}\"\nmass = {}\nradius = {}\n{}\n", name, mass, radius, more);
-}
-
 const std::string kStick =
     "[[when]]\ntouches = [\"a\", \"b\"]\ndo = [{ stick = true }, { mark = \"hit\" }]\n";
 
@@ -25,9 +21,7 @@ TEST(Joining, WhatSticksKeepsMomentumAndAngularMomentum) {
         const std::string surface = fmt::format("elasticity = {}\nfriction = 0.3", e);
         const std::string third = dimension == 3 ? ", 0" : "";
         const std::string text =
-            (dimension == 2 ? plane_without_walls(manner, "gravity = [0, 0]\n" + surface)
-                            : space_without_walls(manner, "gravity = [0, 0, 0]\n" + surface)) +
-            "rate = 600\n" +
+            empty_room(manner, dimension, surface) + "rate = 600\n" +
             disc("a", 1, 0.3, "position = [-2, 0.25" + third + "]\nvelocity = [3, 0" + third + "]") +
             disc("b", 2, 0.3, "position = [0, 0" + third + "]") + kStick;
         const TextRun run(text);

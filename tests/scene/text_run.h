@@ -36,6 +36,16 @@ inline std::string space_without_walls(const Manner& manner, const std::string& 
          "\n" + manner.keys + "\n";
 }
 
+/// A room of either dimension without walls and gravity.
+inline std::string empty_room(const Manner& manner, int dimension, const std::string& room = "") {
+  return dimension == 2 ? plane_without_walls(manner, "gravity = [0, 0]\n" + room)
+                        : space_without_walls(manner, "gravity = [0, 0, 0]\n" + room);
+}
+/// A ball, in the plane a disc; `more`: the rest of its keys.
+inline std::string disc(const std::string& name, double mass, double radius, const std::string& more) {
+  return fmt::format("[[ball]]\nname = \"{}\"\nmass = {}\nradius = {}\n{}\n", name, mass, radius, more);
+}
+
 /// What parse() says against a text; empty: nothing.
 inline std::string refusal(const std::string& text) {
   try {

@@ -68,7 +68,7 @@ void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, 
 std::vector<char> arms_of(const sim::SceneInfo& cast) {
   std::vector<char> arm(cast.bodies.size(), 0);
   for (const sim::SceneInfo::Joint& joint : cast.joints) {
-    if (joint_look(joint.kind).plane != JointMark::teeth || joint.places.size() != 4) continue;
+    if (joint_look(joint.kind).plane != JointMark::teeth || joint.places.size() != 4 || joint.belt) continue;
     for (const auto& [wheel, radius] : {std::pair(0, joint.offset_a), std::pair(2, joint.offset_b)}) {
       const int of = joint.places[std::size_t(wheel)].body, by = joint.places[std::size_t(wheel) + 1].body;
       if (!(radius > 0) || of < 0 || by < 0 || cast.bodies[std::size_t(by)].fixed) continue;

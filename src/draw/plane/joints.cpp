@@ -145,7 +145,7 @@ std::map<int, Toothed> toothed_wheels(const sim::SceneInfo& cast, const sim::Sna
   const auto is_gear = [&](std::size_t i) {
     const sim::SceneInfo::Joint& joint = cast.joints[i];
     return joint_look(joint.kind).plane == JointMark::teeth && !now.joints[i].broken &&
-           joint.places.size() == 4;
+           joint.places.size() == 4 && !joint.belt;
   };
   double least = 1e300;
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
@@ -357,19 +357,17 @@ void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, L
 
 namespace {
 
-// Belts: around two wheels, along the two lines that both have on one side. Their radii are negative.
+// Belts: around two wheels, along the two lines that both have on one side.
 void draw_belts(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   constexpr double kArcPiece = 0.05;  // rad
   std::vector<Node> nodes;
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
     const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
-    if (joint_look(joint.kind).plane != JointMark::teeth || now.joints[i].broken ||
-        joint.places.size() != 4 || !(joint.offset_a < 0 && joint.offset_b < 0))
-      continue;
+    if (!joint.belt || now.joints[i].broken) continue;
     const Vec3 one = place_of(now, joint.places[0]), other = place_of(now, joint.places[2]);
     const double far = (other - one).norm();
     const Vec3 u = (other - one) / far, across(-u.y(), u.x(), 0);
-    const double turn = std::acos(std::clamp((joint.offset_b - joint.offset_a) / far, -1.0, 1.0));
+    const double turn = std::acos(std::clamp((joint.offset_a - joint.offset_b) / far, -1.0, 1.0));
     nodes.clear();
     const auto arc = [&](const Vec3& center, double radius, double from, double to) {
       const int pieces = std::max(1, int(std::ceil((to - from) / kArcPiece)));
@@ -379,7 +377,7 @@ void draw_belts(const Stage& stage, const View& view, const sim::Snapshot& now, 
                          kRope * stage.layout.weight, stage.colours.spring});
       }
     };
-    arc(one, -joint.offset_a, turn, kRound - turn), arc(other, -joint.offset_b, -turn, turn);
+    arc(one, joint.offset_a, turn, kRound - turn), arc(other, joint.offset_b, -turn, turn);
     nodes.push_back(nodes.front());
     list.of({Subject::What::joint, int(i)});
     list.add(nodes, Cap::round);

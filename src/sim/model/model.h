@@ -175,8 +175,9 @@ struct Joint {
   int rope = -1;        // a pulley: its number; those of one rope have the same, and break together
   double ratio = 1;     // a gear: of the first joint's coordinate, and the second's; a screw: m a radian
   std::shared_ptr<const std::array<Joint, 2>> geared;  // and both
-  std::shared_ptr<const Curve<D>> curve;               // a wire: in b's frame; for the room, in the room
-  bool lets_go = false;                                // a wire: at its open ends, where others stop
+  bool belt = false;  // a gear: instead of teeth, around wheels of the radii on_a.offset and on_b.offset
+  std::shared_ptr<const Curve<D>> curve;  // a wire: in b's frame; for the room, in the room
+  bool lets_go = false;                   // a wire: at its open ends, where others stop
   // the terms of its relative angle, as bodies and factors; empty: angle of a less angle of b
   std::vector<std::pair<int, double>> turns;
 

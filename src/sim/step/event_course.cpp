@@ -140,8 +140,8 @@ void Events<D>::meet(const State<D>& state, std::pair<int, int> pair, bool touch
 }
 
 // Whether two that touched, and bear nothing at the end of a step, do so only because a step is straight
-// where their way is curved: gravity closes the gap again within a step, v_n + g_n h < 0, and it is as small
-// as that makes it, |g_n| h^2.
+// where their way is curved: by gravity and their way, a = J g + J' v < 0, the gap closes again within a
+// step, J v + a h < 0, and it is as small as that makes it, |a| h^2.
 template <int D>
 bool Events<D>::returns(const State<D>& state, std::pair<int, int> pair) {
   const Model<D>& model = stepper_->model(state);
@@ -161,8 +161,8 @@ bool Events<D>::returns(const State<D>& state, std::pair<int, int> pair) {
     const EvaluatedContact<D> now = rows(gap, one, other, J);
     const double speed =
         J[0].along.dot(one.v - other.v) + J[0].angular_a.dot(one.w) - J[0].angular_b.dot(other.w);
-    const double pull = falls * J[0].along.dot(model.gravity) + J[0].velocity_product;
-    return pull < 0 && speed + pull * h < 0 && now.value <= -pull * h * h;
+    const double a_n = falls * J[0].along.dot(model.gravity) + J[0].velocity_product;
+    return a_n < 0 && speed + a_n * h < 0 && now.value <= -a_n * h * h;
   });
 }
 

@@ -297,7 +297,7 @@ SceneInfo cast(const Model<D>& model, const State<D>& start, const std::vector<P
     for (const End<D>& end : j.over) add(end);
     if (!gear) add(j.b);
     it.offset_a = j.on_a.offset, it.offset_b = j.on_b.offset, it.rope = j.rope;
-    it.around = j.around, it.rounds = j.whole_turns;
+    it.around = j.around, it.rounds = j.whole_turns, it.belt = j.belt;
     it.tooth_a = to_3d<D>(j.on_a.start), it.tooth_b = to_3d<D>(j.on_b.start);
   }
   for (std::size_t i = 0; i < model.mice.size(); ++i) {

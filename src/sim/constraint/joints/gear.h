@@ -11,7 +11,7 @@
 //   across the line of the centres for two pins of pitch radii r_1 and r_2 = |n| r_1, along the rack for a
 //   slider. The pins hold, so their terms change no motion: by them the teeth push wheels and not only turn
 //   them, and axles bear that. F is zero of wheels about one place, about axes that are not parallel, or
-//   on different bodies, or of a belt, whose wheels are negative radii; then the gear is a couple. Breaks by
+//   on different bodies, or of a belt; then the gear is a couple. Breaks by
 //   its force or its torque, and where one of its joints breaks.
 // Source: Featherstone, Rigid Body Dynamics Algorithms (2008), §3 (a constraint of two joint variables).
 
@@ -59,7 +59,7 @@ struct ToothForce {
 /// different bodies.
 template <int D>
 ToothForce<D> tooth_force(const JointPose<D>& gear) {
-  if (!one_frame(gear.joint) || gear.joint.on_a.offset < 0) return {};
+  if (!one_frame(gear.joint) || gear.joint.belt) return {};
   const Joint<D>&p = (*gear.joint.geared)[0], &q = (*gear.joint.geared)[1];
   const BodyMotion<D>&a = gear.side(p.a.body), &b = gear.side(q.a.body), &frame = gear.side(p.b.body);
   const Vec<D> arm_a = a.arm(p.a.local), arm_b = b.arm(q.a.local);

@@ -1,6 +1,7 @@
 // A body has an impact in a step of h if it reaches a wall, or a fixed body, faster than it falls in one
 // step:
 //   gap + h u - 2 g h^2 < 0,   u < -g h         u  speed of its nearest point along the normal, at least
+// It rolls if it is not round about its centre of mass, turns, and bears on nothing else.
 // It is alone if no other body can reach it, nor one that is moved or a belt:
 //   |x_i - x_j| > r_i + r_j + s_i + s_j       s = 1.1 h sqrt(2 K / m) + g h^2, r  bounding radius
 

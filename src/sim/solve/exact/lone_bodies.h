@@ -9,8 +9,8 @@
 namespace obscura::sim {
 
 /// Bodies that in this step can meet only walls and fixed bodies without a belt, and strike them faster than
-/// resting bodies do. The exact solver moves them, whichever solver moves all others: each impact at its own
-/// time, however many there are.
+/// resting bodies do, or roll or rock on them. The exact solver moves them, whichever solver moves all
+/// others: each impact at its own time, however many there are.
 template <int D>
 class LoneBodies {
  public:
