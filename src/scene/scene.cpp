@@ -266,7 +266,6 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   tracks(top, constants, roster, world, scene.look, complaints);
   for (const Seat<D>& seat : roster.seats) scene.axes.push_back(sim::quaternion<D>(seat.axes));
   ready_to_let_go(top, roster, world, complaints);
-  const std::size_t before = complaints.count();
   const std::vector<NameRange> sprung = springs(top, roster, world, complaints);
   nets(top, roster, world, complaints);
   joints(top, roster, constants, world, complaints);
@@ -280,11 +279,8 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   const Rebuild<D> rebuild = [&](const std::string& set, Place place, Diagnostics& wrong) {
     return rebuilt<D>(top, copy_sets, told, set, place, wrong);
   };
-  // what they name may be missing where a spring, a joint or a force is wrong
-  if (events && complaints.count() == before) {
-    whens<D>(top, roster, sprung, bonded, constants, rebuild, world, complaints);
+  if (events && whens<D>(top, roster, sprung, bonded, constants, rebuild, world, complaints))
     constants.refuse_unused();
-  }
   if (model.collision == sim::Collision::handout) refuse_beyond_handout(top, D, complaints);
   refuse_crowd(top, model, complaints);
   check_static_friction(top, model, complaints);

@@ -10,6 +10,35 @@ namespace obscura::scene {
 
 namespace {
 
+// the names of [[joint]]s and [[spring]]s that are not in the model, as something is wrong with them
+template <int D>
+std::vector<std::string> missing(const WhenNames<D>& names) {
+  std::vector<std::string> found;
+  for (const char* kind : {"joint", "spring"}) {
+    const Node* all = names.top.find(kind);
+    for (std::size_t k = 0; all && k < all->list().size(); ++k) {
+      const Node* its = all->list()[k].find("name");
+      const std::string name = its && its->is_text() ? its->text() : fmt::format("{}[{}]", kind, k);
+      if (names.joints(name).empty() && names.joints(name + "[*]").empty() &&
+          names.springs_called(name).empty())
+        found.push_back(name);
+    }
+  }
+  return found;
+}
+
+// whether any text in it has one of these names
+bool mentions(const Node& node, const std::vector<std::string>& names) {
+  if (node.is_text())
+    return std::any_of(names.begin(), names.end(),
+                       [&](const std::string& it) { return node.text().find(it) != std::string::npos; });
+  if (node.is_list())
+    return std::any_of(node.list().begin(), node.list().end(),
+                       [&](const Node& it) { return mentions(it, names); });
+  return node.is_table() && std::any_of(node.table().begin(), node.table().end(),
+                                        [&](const Entry& it) { return mentions(it.node, names); });
+}
+
 // joints and springs that are not there at the start, and which no event makes
 template <int D>
 void refuse_never_made(const WhenNames<D>& names) {
@@ -45,16 +74,22 @@ void refuse_never_made(const WhenNames<D>& names) {
 }  // namespace
 
 template <int D>
-void whens(const Node& top, const NameTable& roster, const std::vector<NameRange>& springs,
+bool whens(const Node& top, const NameTable& roster, const std::vector<NameRange>& springs,
            const std::vector<NameRange>& bonds, Constants& constants, const Rebuild<D>& rebuild,
            sim::World<D>& world, Diagnostics& complaints) {
   using Do = typename sim::When<D>::Action::Do;
   sim::Model<D>& model = world.model;
   const WhenNames<D> names{top, roster, springs, bonds, model, complaints};
   Glued glued;
+  const std::vector<std::string> wanting = missing(names);
+  bool whole = true;
   const Node* all = top.find("when");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "when");
+    if (mentions(all->list()[k], wanting)) {
+      whole = false;  // what is wrong there is told
+      continue;
+    }
     sim::When<D> when;
     when.name = fields.given("name") ? fields.text("name") : fmt::format("when[{}]", k);
     when.again = fields.flag("again");
@@ -63,16 +98,17 @@ void whens(const Node& top, const NameTable& roster, const std::vector<NameRange
     actions(fields, names, rebuild, world, glued, when, complaints);
     if (complaints.count() == wrong) model.whens.push_back(std::move(when));
   }
-  refuse_never_made(names);
+  if (whole) refuse_never_made(names);
   for (const sim::When<D>& when : model.whens)
     for (const auto& action : when.actions)
       model.changed = model.changed || !(action.what == Do::mark || action.what == Do::stop);
+  return whole;
 }
 
-template void whens<2>(const Node&, const NameTable&, const std::vector<NameRange>&,
+template bool whens<2>(const Node&, const NameTable&, const std::vector<NameRange>&,
                        const std::vector<NameRange>&, Constants&, const Rebuild<2>&, sim::World<2>&,
                        Diagnostics&);
-template void whens<3>(const Node&, const NameTable&, const std::vector<NameRange>&,
+template bool whens<3>(const Node&, const NameTable&, const std::vector<NameRange>&,
                        const std::vector<NameRange>&, Constants&, const Rebuild<3>&, sim::World<3>&,
                        Diagnostics&);
 

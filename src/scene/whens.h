@@ -5,9 +5,10 @@
 
 namespace obscura::scene {
 
-/// Puts the conditions of [[when]] and the changes that they make into a world, after all else.
+/// Puts the conditions of [[when]] and the changes that they make into a world, after all else. False: some
+/// are left out, as a joint or a spring that they name is wrong, which has been told.
 template <int D>
-void whens(const Node& top, const NameTable& roster, const std::vector<NameRange>& springs,
+bool whens(const Node& top, const NameTable& roster, const std::vector<NameRange>& springs,
            const std::vector<NameRange>& bonds, Constants& constants, const Rebuild<D>& rebuild,
            sim::World<D>& world, Diagnostics& complaints);
 

@@ -1,6 +1,8 @@
 // What an event changes beside bodies and joints that it holds together: springs that are let go, joined or
 // set, the mass of a body, gears and pulleys that engage.
 
+#include <algorithm>
+
 #include "scene/text_run.h"
 
 namespace obscura::scene {
@@ -263,6 +265,16 @@ TEST(Changing, WhatCannotBeChangedIsRefused) {
   expect(refusal(room + "joined = false\n"), "needs 'rest_length'");
   expect(refusal(room + "joined = false\nrest_length = 1\n"), "no event joins this spring");
   EXPECT_EQ(when("release = \"band\""), "");
+  // a joint that is wrong is told once, and what is wrong elsewhere, too
+  const std::string wrong =
+      refusal(room +
+              "[[joint]]\nname = \"hook\"\ntype = \"rod\"\nbetween = [\"a\", \"room\"]\n"
+              "[[when]]\ntime = 1\ndo = [{ release = \"hook\" }]\n"
+              "[[when]]\nvalue = \"hook.force > 1\"\ndo = [{ set = \"band.stiffness\", to = 1 }]\n"
+              "[[when]]\ntime = 1\ndo = [{ release = \"bend\" }]\n");
+  expect(wrong, "where in the room? A rod needs a place");
+  expect(wrong, "no body, joint or spring is called 'bend'");
+  EXPECT_EQ(std::count(wrong.begin(), wrong.end(), '\n'), 1) << wrong;
 }
 
 }  // namespace
