@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "scene/readings.h"
 #include "sim/model/condition.h"
 #include "sim/shape/shape.h"
 
@@ -11,48 +12,14 @@ namespace obscura::scene {
 
 namespace {
 
-struct Quantity {
-  std::string_view word;
-  sim::Reading::Of of;
-};
-constexpr Quantity kQuantities[] = {
-    {"x", sim::Reading::Of::x},
-    {"y", sim::Reading::Of::y},
-    {"z", sim::Reading::Of::z},
-    {"vx", sim::Reading::Of::vx},
-    {"vy", sim::Reading::Of::vy},
-    {"vz", sim::Reading::Of::vz},
-    {"speed", sim::Reading::Of::speed},
-    {"angle", sim::Reading::Of::angle},
-    {"spin", sim::Reading::Of::spin},
-    // as states and --measure say it
-    {"position.x", sim::Reading::Of::x},
-    {"position.y", sim::Reading::Of::y},
-    {"position.z", sim::Reading::Of::z},
-    {"velocity.x", sim::Reading::Of::vx},
-    {"velocity.y", sim::Reading::Of::vy},
-    {"velocity.z", sim::Reading::Of::vz},
-    {"contact", sim::Reading::Of::contact},
-    {"normal_force", sim::Reading::Of::normal_force},
-    {"friction", sim::Reading::Of::friction},
-    {"spring_force", sim::Reading::Of::spring_force},
-    {"joint_force", sim::Reading::Of::joint_force},
-    {"force", sim::Reading::Of::force},
-    {"torque", sim::Reading::Of::torque},
-};
-
-bool in_word(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-}
-
 template <int D>
 class ConditionBuilder {
  public:
   using When = sim::When<D>;
   using On = typename When::On;
 
-  ConditionBuilder(const WhenNames<D>& names, Constants& constants, Diagnostics& complaints)
-      : names_(names), constants_(constants), model_(names.model), complaints_(complaints) {}
+  ConditionBuilder(const WhenNames<D>& names, Diagnostics& complaints)
+      : names_(names), constants_(names.constants), model_(names.model), complaints_(complaints) {}
 
   void condition(const Fields& fields, When& when) {
     const Node* one = nullptr;
@@ -161,96 +128,13 @@ class ConditionBuilder {
 
   void value(const Node& node, When& when) {
     const std::string text = typed(node);
-    constants_.read_by(text);
-    // quantities of bodies where they stand in the text
-    std::vector<std::string> words;
-    std::vector<sim::Symbol> refused;
-    for (std::size_t dot = text.find('.'); dot != std::string::npos; dot = text.find('.', dot + 1)) {
-      std::size_t end = dot + 1;
-      while (end < text.size() && (in_word(text[end]) || text[end] == '.')) ++end;
-      const std::string quantity = text.substr(dot + 1, end - dot - 1);
-      std::size_t begin = dot;
-      if (begin > 0 && text[begin - 1] == ']')
-        while (begin > 0 && text[begin - 1] != '[') --begin;
-      if (begin != dot && begin > 0) --begin;
-      while (begin > 0 && (in_word(text[begin - 1]) || text[begin - 1] == '-')) --begin;
-      // a name may have dashes, and a minus may stand before it
-      for (; begin < dot; ++begin) {
-        const bool starts = begin == 0 || !in_word(text[begin - 1]);
-        const std::string name = text.substr(begin, dot - begin);
-        const std::vector<int> held =
-            starts && !names_.is_body(name) ? names_.joints(name) : std::vector<int>();
-        if (!starts || (!names_.is_body(name) && held.empty())) continue;
-        const std::string word = text.substr(begin, end - begin);
-        if (std::find(words.begin(), words.end(), word) != words.end()) break;
-        if (!held.empty()) {
-          if (held.size() > 1) {
-            complaints_.add(node.place,
-                            fmt::format("'value': {} is {} joints; a condition reads one of them, {}",
-                                        scene::quoted(name), held.size(),
-                                        scene::quoted(model_.joints[std::size_t(held[0])].name)));
-            return;
-          }
-          if (quantity != "force" && quantity != "torque") {
-            refused.push_back({word, -1, "is not what conditions read of a joint: force and torque"});
-            break;
-          }
-          words.push_back(word);
-          when.reads.push_back(
-              {held[0], quantity == "force" ? sim::Reading::Of::force : sim::Reading::Of::torque});
-          break;
-        }
-        const std::vector<int> found = names_.roster.bodies(name, node.place, complaints_);
-        if (found.empty()) return;
-        if (found.size() > 1) {
-          complaints_.add(node.place, fmt::format("'value': {} is {} bodies; a condition reads one of them",
-                                                  scene::quoted(name), found.size()));
-          return;
-        }
-        const std::string why = refusal(found[0], quantity);
-        if (!why.empty()) {
-          refused.push_back({word, -1, why});
-          break;
-        }
-        words.push_back(word);
-        const auto of = std::find_if(std::begin(kQuantities), std::end(kQuantities),
-                                     [&](const Quantity& it) { return it.word == quantity; });
-        when.reads.push_back({found[0], of->of});
-        break;
-      }
-    }
-    auto made = sim::condition_formula(text, words, refused, constants_.numbers());
-    if (const auto* fault = std::get_if<sim::ExpressionFault>(&made)) {
-      std::vector<std::string> names{"t"};
-      for (const auto& [name, number] : constants_.numbers()) names.push_back(name);
-      for (const Group& group : names_.roster.groups)
-        for (const char* quantity : {"x", "y", "vx", "vy", "speed", "angle", "spin"})
-          if (names.size() < 2000) names.push_back(group.name + "." + quantity);
-      for (const std::string_view name : sim::expression_functions()) names.emplace_back(name);
-      for (const std::string_view name : sim::expression_numbers()) names.emplace_back(name);
-      complain(node, "value", *fault, names, complaints_);
-      return;
-    }
+    Readings<D> found(names_);
+    if (!found.read(node, "value", text)) return;
+    auto made = sim::condition_formula(text, found.words(), found.refused(), constants_.numbers());
+    if (const auto* fault = std::get_if<sim::ExpressionFault>(&made))
+      return complain(node, "value", *fault, found.known(), complaints_);
     when.value = std::make_shared<const sim::Program>(std::get<sim::Program>(std::move(made)));
-  }
-
-  // why a condition cannot read a quantity of a body; empty: it can
-  std::string refusal(int body, const std::string& quantity) const {
-    const auto found = std::find_if(std::begin(kQuantities), std::end(kQuantities),
-                                    [&](const Quantity& it) { return it.word == quantity; });
-    if (found == std::end(kQuantities))
-      return D == 2 ? "is not what conditions read: x, y, vx, vy, speed, angle, spin, contact, "
-                      "normal_force, friction, spring_force and joint_force"
-                    : "is not what conditions read: x, y, z, vx, vy, vz, speed, spin, contact, "
-                      "normal_force, friction, spring_force and joint_force";
-    using enum sim::Reading::Of;
-    if (found->of == force || found->of == torque)
-      return "is of a joint, and this is a body; joint_force is what joints give it";
-    if (D == 2 && (found->of == z || found->of == vz)) return "is of space, and this scene is in the plane";
-    if (D == 3 && found->of == angle) return "is of the plane, and this scene is in space";
-    if ((found->of == angle || found->of == spin) && !model_.bodies[std::size_t(body)].turns())
-      return "is of a body that turns, and this does not";
-    return "";
+    when.reads = found.all();
   }
 
   void breaks(const Node& node, When& when) {
@@ -284,7 +168,7 @@ class ConditionBuilder {
   }
 
   const WhenNames<D>& names_;
-  Constants& constants_;
+  const Constants& constants_;
   const sim::Model<D>& model_;
   Diagnostics& complaints_;
 };
@@ -292,12 +176,11 @@ class ConditionBuilder {
 }  // namespace
 
 template <int D>
-void condition(const Fields& fields, const WhenNames<D>& names, Constants& constants, sim::When<D>& when,
-               Diagnostics& complaints) {
-  ConditionBuilder<D>(names, constants, complaints).condition(fields, when);
+void condition(const Fields& fields, const WhenNames<D>& names, sim::When<D>& when, Diagnostics& complaints) {
+  ConditionBuilder<D>(names, complaints).condition(fields, when);
 }
 
-template void condition<2>(const Fields&, const WhenNames<2>&, Constants&, sim::When<2>&, Diagnostics&);
-template void condition<3>(const Fields&, const WhenNames<3>&, Constants&, sim::When<3>&, Diagnostics&);
+template void condition<2>(const Fields&, const WhenNames<2>&, sim::When<2>&, Diagnostics&);
+template void condition<3>(const Fields&, const WhenNames<3>&, sim::When<3>&, Diagnostics&);
 
 }  // namespace obscura::scene

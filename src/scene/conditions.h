@@ -1,6 +1,5 @@
 #pragma once
 
-#include "scene/expressions.h"
 #include "scene/when_names.h"
 
 namespace obscura::scene {
@@ -8,7 +7,6 @@ namespace obscura::scene {
 /// Reads the condition of a [[when]] into `when`; complains where it has none, several, or one that cannot
 /// be.
 template <int D>
-void condition(const Fields& fields, const WhenNames<D>& names, Constants& constants, sim::When<D>& when,
-               Diagnostics& complaints);
+void condition(const Fields& fields, const WhenNames<D>& names, sim::When<D>& when, Diagnostics& complaints);
 
 }  // namespace obscura::scene

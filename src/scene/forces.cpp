@@ -118,19 +118,14 @@ class ForceBuilder {
   }
 
   std::optional<Subject> center(const Node& node) {
-    if (node.is_table()) {
-      complaints_.add(node.place,
-                      "'center': expected a place or the name of a body; it is that body's centre of mass");
-      return {};
-    }
     const std::vector<sim::End<D>> ends = scene::ends<D>(node, roster_, world_, complaints_);
     if (ends.empty()) return {};
     if (ends.size() > 1) {
       complaints_.add(node.place, fmt::format("'center': expected one body, got {}", ends.size()));
       return {};
     }
-    if (ends[0].body >= 0) return subject(ends[0].body);
     Subject made;
+    if (ends[0].body >= 0) made = subject(ends[0].body);
     made.local = ends[0].local;
     return made;
   }

@@ -174,9 +174,16 @@ class Joining {
         if (drive.body == end && (drive.release || drive.by_event)) return false;
       return world_.model.bodies[std::size_t(end)].fixed;
     };
-    if (held(it.a.body) && held(it.b.body))
-      return refuse(place,
-                    fmt::format("'{}' is fixed, and so is the other end: nothing could move", body.name));
+    if (held(it.a.body) && held(it.b.body)) {
+      const auto moved = [&](int end) { return end >= 0 && world_.model.bodies[std::size_t(end)].driven; };
+      const bool any = moved(it.a.body) || moved(it.b.body);
+      return refuse(
+          place,
+          any ? fmt::format("'{}' goes as its 'motion' says, and the other end stays: a joint would hold "
+                            "nothing. A wheel that drives a gear has a joint with a 'motor', and no 'motion'",
+                            moved(it.a.body) ? body.name : world_.model.bodies[std::size_t(it.b.body)].name)
+              : fmt::format("'{}' is fixed, and so is the other end: nothing could move", body.name));
+    }
 
     it.turn = sim::as_it_stands(it, world_.state, world_.model.joints.size()).turn;
     if (its_.axis) {
@@ -431,7 +438,8 @@ void joints(const Node& top, const Seating<D>& roster, Constants& constants, sim
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "joint");
     if (!fields.given("type") || type<D>(fields.text("type")) != JointKind::gear) continue;
-    gear(fields, fields.given("name") ? fields.text("name") : fmt::format("joint[{}]", k), world, complaints);
+    gear(top, fields, fields.given("name") ? fields.text("name") : fmt::format("joint[{}]", k), world,
+         complaints);
   }
 }
 

@@ -155,14 +155,16 @@ std::string row(const Key& key, const std::string& section) {
   if (!key.unit.empty()) kind += ", " + key.unit;
   if (const std::string r = range_text(key); !r.empty()) kind += ", " + r;
   if (key.varies) kind += key.form == Form::color || key.form == Form::text ? "; or a list" : "; *varies*";
-  const std::string absent = key.required           ? "needed"
-                             : !key.absent.empty()  ? key.absent
-                             : key.fallback.empty() ? ""
-                                                    : "`" + key.fallback + "`";
+  const std::string absent = key.required                                  ? "needed"
+                             : !key.absent.empty()                         ? key.absent
+                             : key.fallback.empty()                        ? ""
+                             : key.dimension == 3 && !key.in_space.empty() ? "`" + key.in_space + "`"
+                                                                           : "`" + key.fallback + "`";
+  const bool told = key.dimension != 3 || key.doc.find("space") != key.doc.npos;
   const std::string example =
       key.example.empty() ? "" : "`" + std::string(key.last()) + " = " + key.example + "`";
-  return fmt::format("| `{}` | {} | {} | {} | {} |\n", name, cell(kind), cell(absent), cell(key.doc),
-                     cell(example));
+  return fmt::format("| `{}` | {} | {} | {} | {} |\n", name, cell(kind), cell(absent),
+                     cell(told ? key.doc : "In space. " + key.doc), cell(example));
 }
 
 constexpr const char* kHead = "| key | takes | left out | what it is | example |\n|---|---|---|---|---|\n";

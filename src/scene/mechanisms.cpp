@@ -298,7 +298,8 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
 }
 
 template <int D>
-void gear(const Fields& fields, const std::string& name, sim::World<D>& world, Diagnostics& complaints) {
+void gear(const Node& top, const Fields& fields, const std::string& name, sim::World<D>& world,
+          Diagnostics& complaints) {
   refuse_other_keys(fields, complaints);
   const Node *joints = fields.given("joints"), *ratio = fields.given("ratio");
   if (const Node* between = fields.given("between")) {
@@ -316,6 +317,13 @@ void gear(const Fields& fields, const std::string& name, sim::World<D>& world, D
     const std::string& wanted = joints->list()[k].text();
     const auto found = std::ranges::find(world.model.joints, wanted, &sim::Joint<D>::name);
     if (found == world.model.joints.end()) {
+      // what is wrong there is told
+      const Node* tables = top.find("joint");
+      const auto called = [&](const Node& it) {
+        const Node* its = it.find("name");
+        return its && its->is_text() && its->text() == wanted;
+      };
+      if (tables && std::ranges::any_of(tables->list(), called)) return;
       std::vector<std::string_view> known;
       for (const sim::Joint<D>& joint : world.model.joints) known.push_back(joint.name);
       complaints.add(joints->list()[k].place,
@@ -424,7 +432,7 @@ void gear(const Fields& fields, const std::string& name, sim::World<D>& world, D
 
 template void pulley<2>(const Fields&, const std::string&, const Seating<2>&, sim::World<2>&, Diagnostics&);
 template void pulley<3>(const Fields&, const std::string&, const Seating<3>&, sim::World<3>&, Diagnostics&);
-template void gear<2>(const Fields&, const std::string&, sim::World<2>&, Diagnostics&);
-template void gear<3>(const Fields&, const std::string&, sim::World<3>&, Diagnostics&);
+template void gear<2>(const Node&, const Fields&, const std::string&, sim::World<2>&, Diagnostics&);
+template void gear<3>(const Node&, const Fields&, const std::string&, sim::World<3>&, Diagnostics&);
 
 }  // namespace obscura::scene

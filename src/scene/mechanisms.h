@@ -17,6 +17,7 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
 
 /// Puts a gear into the world, after all other joints.
 template <int D>
-void gear(const Fields& fields, const std::string& name, sim::World<D>& world, Diagnostics& complaints);
+void gear(const Node& top, const Fields& fields, const std::string& name, sim::World<D>& world,
+          Diagnostics& complaints);
 
 }  // namespace obscura::scene

@@ -265,7 +265,7 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
       bodies<D>(top, walls, scene.seed, copy_sets, told, constants, world, scene.look.bodies, complaints);
   tracks(top, constants, roster, world, scene.look, complaints);
   for (const Seat<D>& seat : roster.seats) scene.axes.push_back(sim::quaternion<D>(seat.axes));
-  ready_to_let_go(top, roster, world, complaints);
+  ready_to_let_go(top, roster, constants, world, complaints);
   const std::vector<NameRange> sprung = springs(top, roster, world, complaints);
   nets(top, roster, world, complaints);
   joints(top, roster, constants, world, complaints);

@@ -249,10 +249,10 @@ void actions(const Fields& fields, const WhenNames<D>& names, const Rebuild<D>& 
 }
 
 template <int D>
-void ready_to_let_go(const Node& top, const NameTable& roster, sim::World<D>& world,
+void ready_to_let_go(const Node& top, const NameTable& roster, Constants& constants, sim::World<D>& world,
                      Diagnostics& complaints) {
   sim::Model<D>& model = world.model;
-  const WhenNames<D> names{top, roster, {}, {}, model, complaints};
+  const WhenNames<D> names{top, roster, {}, {}, model, constants, complaints};
   std::vector<int> held;  // that events fix
   each_action(top, [&](const Node& action) {
     const Node *set = action.find("set"), *to = action.find("to");
@@ -295,9 +295,9 @@ void ready_to_let_go(const Node& top, const NameTable& roster, sim::World<D>& wo
   });
 }
 
-#define OBSCURA_INSTANTIATE(D)                                                                            \
-  template void ready_to_let_go<D>(const Node&, const NameTable&, sim::World<D>&, Diagnostics&);          \
-  template void actions<D>(const Fields&, const WhenNames<D>&, const Rebuild<D>&, sim::World<D>&, Glued&, \
+#define OBSCURA_INSTANTIATE(D)                                                                               \
+  template void ready_to_let_go<D>(const Node&, const NameTable&, Constants&, sim::World<D>&, Diagnostics&); \
+  template void actions<D>(const Fields&, const WhenNames<D>&, const Rebuild<D>&, sim::World<D>&, Glued&,    \
                            sim::When<D>&, Diagnostics&)
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);

@@ -10,7 +10,8 @@ namespace obscura::scene {
 
 /// Makes the bodies that [[when]] lets go ready for it. Before forces, which leave out what never moves.
 template <int D>
-void ready_to_let_go(const Node& top, const NameTable& roster, sim::World<D>& world, Diagnostics& complaints);
+void ready_to_let_go(const Node& top, const NameTable& roster, Constants& constants, sim::World<D>& world,
+                     Diagnostics& complaints);
 
 /// The joints that `join` and `stick` make of two bodies: each two have one.
 using Glued = std::map<std::pair<int, int>, int>;

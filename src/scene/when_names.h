@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "scene/complaints.h"
+#include "scene/expressions.h"
 #include "scene/fields.h"
 #include "scene/name_range.h"
 #include "scene/roster.h"
@@ -18,6 +19,7 @@ struct WhenNames {
   const NameTable& roster;
   const std::vector<NameRange>&springs, &bonds;
   const sim::Model<D>& model;
+  Constants& constants;
   Diagnostics& complaints;
 
   /// Whether a name means a body, without a complaint.

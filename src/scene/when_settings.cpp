@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "scene/path.h"
+#include "scene/readings.h"
 #include "sim/constraint/joints/joint.h"
+#include "sim/model/condition.h"
 
 namespace obscura::scene {
 
@@ -66,7 +68,7 @@ class SettingReader {
     if (changes_.bonded(node.place)) return;
     if (const auto body = owner(path, "fixed"); body && names_.is_body(*body))
       return fix(node, *body, *to, when);
-    if (value_of_body(node, *to, when) || kick(node, *to, when)) return;
+    if (value_of_body(node, *to, when) || kick(node, *to, when) || belt(node, *to, when)) return;
     if (spring(node, *to, when)) return;
     const auto steps = scene::path(path);
     const auto at = path.find(".motor");
@@ -92,7 +94,7 @@ class SettingReader {
         fmt::format("'set': {} stays as it is while the room runs; events set motors "
                     "(JOINT.motor.speed), JOINT.friction, forces (FORCE.components), room.wind, electric, "
                     "magnetic and gravity, SPRING.stiffness, damping and rest_length, BODY.fixed, "
-                    "velocity, spin, mass, charge, drag and quadratic_drag",
+                    "velocity, spin, mass, charge, drag, quadratic_drag and surface_speed",
                     scene::quoted(path)));
   }
 
@@ -157,31 +159,35 @@ class SettingReader {
     return false;
   }
 
-  // a velocity or a spin, from that instant on; false: the key is another's
+  // a velocity or a spin, from that instant on: numbers, or expressions of what was; false: the key is
+  // another's
   bool kick(const Node& node, const Node& to, When& when) {
     for (const bool turns : {false, true}) {
       const auto name = owner(node.text(), turns ? "spin" : "velocity");
       if (!name || !names_.is_body(*name)) continue;
-      const bool number_alone = turns && D == 2;
-      const bool good = number_alone ? to.is_number()
-                                     : to.is_list() && to.list().size() == D &&
-                                           std::all_of(to.list().begin(), to.list().end(),
-                                                       [](const Node& it) { return it.is_number(); });
-      if (!good) {
+      const bool alone = turns && D == 2;
+      const auto good = [](const Node& it) { return it.is_number() || it.is_text(); };
+      std::vector<const Node*> components;
+      if (alone && good(to)) components.push_back(&to);
+      for (std::size_t k = 0; !alone && to.is_list() && k < to.list().size(); ++k)
+        if (good(to.list()[k])) components.push_back(&to.list()[k]);
+      if (components.size() != (alone ? 1 : D) || (!alone && to.list().size() != D)) {
         complaints_.add(to.place, fmt::format("{}: expected {}", scene::quoted(node.text()),
-                                              number_alone ? "degrees a second"
-                                              : D == 2     ? "[x, y]"
-                                                           : "[x, y, z]"));
+                                              alone    ? "degrees a second, or an expression"
+                                              : D == 2 ? "[x, y]"
+                                                       : "[x, y, z]"));
         return true;
       }
       Change change;
       change.of = turns ? Change::Of::spin : Change::Of::velocity;
-      if (!turns)
-        change.velocity = vector<D>(to);
-      else if constexpr (D == 2)
-        change.spin[0] = to.number() * std::numbers::pi / 180;
-      else
-        change.spin = vector<D>(to) * (std::numbers::pi / 180);
+      const double unit = turns ? std::numbers::pi / 180 : 1;
+      if (std::any_of(components.begin(), components.end(), [](const Node* it) { return it->is_text(); })) {
+        if (!kick_formula(components, unit, change)) return true;
+      } else {
+        for (std::size_t k = 0; k < components.size(); ++k)
+          (turns ? change.spin[Eigen::Index(k)] : change.velocity[Eigen::Index(k)]) =
+              components[k]->number() * unit;
+      }
       std::vector<Change> all;
       for (const int body : free_bodies(node, *name, "its velocity")) {
         change.index = body;
@@ -191,6 +197,38 @@ class SettingReader {
       return true;
     }
     return false;
+  }
+
+  bool kick_formula(const std::vector<const Node*>& components, double unit, Change& change) {
+    Readings<D> found(names_);
+    std::vector<std::string> texts;
+    for (const Node* each : components) {
+      texts.push_back(typed(*each));
+      if (!found.read(*each, "to", texts.back())) return false;
+    }
+    auto made = sim::value_formulas(texts, unit, found.words(), found.refused(), names_.constants.numbers());
+    if (const auto* fault = std::get_if<std::pair<int, sim::ExpressionFault>>(&made)) {
+      complain(*components[std::size_t(fault->first)], "to", fault->second, found.known(), complaints_);
+      return false;
+    }
+    change.formula = std::make_shared<const sim::Program>(std::get<sim::Program>(std::move(made)));
+    change.reads = found.all();
+    return true;
+  }
+
+  // the speed of a surface; false: the key is another's
+  bool belt(const Node& node, const Node& to, When& when) {
+    const auto name = owner(node.text(), "surface_speed");
+    if (!name || !names_.is_body(*name)) return false;
+    const auto made = model_with(node, to);
+    if (!made) return true;
+    std::vector<Change> all;
+    for (const int body : names_.roster.bodies(*name, node.place, complaints_)) {
+      all.push_back(changes_.of(Change::Of::belt, body));
+      all.back().spin = made->bodies[std::size_t(body)].belt;
+    }
+    changes_.give(all, when);
+    return true;
   }
 
   // the dry friction of a pin, in space of a hinge, or of a slider

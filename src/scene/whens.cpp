@@ -3,35 +3,50 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
+#include "scene/body_kinds.h"
 #include "scene/conditions.h"
 
 namespace obscura::scene {
 
 namespace {
 
-// the names of [[joint]]s and [[spring]]s that are not in the model, as something is wrong with them
+// the names of bodies, joints and springs that are not in the model, as something is wrong with them
 template <int D>
 std::vector<std::string> missing(const WhenNames<D>& names) {
   std::vector<std::string> found;
-  for (const char* kind : {"joint", "spring"}) {
+  const auto look = [&](std::string_view kind, auto&& known) {
     const Node* all = names.top.find(kind);
-    for (std::size_t k = 0; all && k < all->list().size(); ++k) {
+    for (std::size_t k = 0; all && all->is_list() && k < all->list().size(); ++k) {
       const Node* its = all->list()[k].find("name");
       const std::string name = its && its->is_text() ? its->text() : fmt::format("{}[{}]", kind, k);
-      if (names.joints(name).empty() && names.joints(name + "[*]").empty() &&
-          names.springs_called(name).empty())
-        found.push_back(name);
+      if (!known(name)) found.push_back(name);
     }
-  }
+  };
+  for (const char* kind : {"joint", "spring"})
+    look(kind, [&](const std::string& name) {
+      return !names.joints(name).empty() || !names.joints(name + "[*]").empty() ||
+             !names.springs_called(name).empty();
+    });
+  for (const BodyKind& kind : body_kinds())
+    look(kind.name, [&](const std::string& name) { return names.is_body(name); });
   return found;
 }
 
 // whether any text in it has one of these names
 bool mentions(const Node& node, const std::vector<std::string>& names) {
+  const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  const auto has = [&](const std::string& text, const std::string& name) {
+    for (std::size_t at = text.find(name); at != text.npos; at = text.find(name, at + 1)) {
+      const std::size_t end = at + name.size();
+      if ((at == 0 || !letter(text[at - 1])) && (end == text.size() || !letter(text[end]))) return true;
+    }
+    return false;
+  };
   if (node.is_text())
     return std::any_of(names.begin(), names.end(),
-                       [&](const std::string& it) { return node.text().find(it) != std::string::npos; });
+                       [&](const std::string& it) { return has(node.text(), it); });
   if (node.is_list())
     return std::any_of(node.list().begin(), node.list().end(),
                        [&](const Node& it) { return mentions(it, names); });
@@ -79,7 +94,7 @@ bool whens(const Node& top, const NameTable& roster, const std::vector<NameRange
            sim::World<D>& world, Diagnostics& complaints) {
   using Do = typename sim::When<D>::Action::Do;
   sim::Model<D>& model = world.model;
-  const WhenNames<D> names{top, roster, springs, bonds, model, complaints};
+  const WhenNames<D> names{top, roster, springs, bonds, model, constants, complaints};
   Glued glued;
   const std::vector<std::string> wanting = missing(names);
   bool whole = true;
@@ -94,7 +109,7 @@ bool whens(const Node& top, const NameTable& roster, const std::vector<NameRange
     when.name = fields.given("name") ? fields.text("name") : fmt::format("when[{}]", k);
     when.again = fields.flag("again");
     const std::size_t wrong = complaints.count();
-    condition(fields, names, constants, when, complaints);
+    condition(fields, names, when, complaints);
     actions(fields, names, rebuild, world, glued, when, complaints);
     if (complaints.count() == wrong) model.whens.push_back(std::move(when));
   }

@@ -64,6 +64,24 @@ TEST_F(States, AreOfMarks) {
   EXPECT_NE(never.err.find("does not come to 'back[2]'"), std::string::npos) << never.err;
 }
 
+// A limit of a solver's work that a step meets is told at the end, and counted on from a checkpoint.
+TEST_F(States, TellWhereALimitOfWorkWasMet) {
+  const std::string bridge = OBSCURA_SOURCE_DIR "/scenes/bridge.toml";
+  EXPECT_EQ(obscura("states " + bridge + " --at 0.5").err, "");
+  const Outcome met = obscura("states " + bridge + " --at 0.6");
+  EXPECT_NE(met.err.find("note: 1 step, at t = 0.568333 s, met a limit of the direct solver's work"),
+            std::string::npos)
+      << met.err;
+  EXPECT_EQ(obscura("states " + bridge + " --measure energy.total@0.6").err, met.err);
+  scene(
+      "duration = 1\n[room]\nsize = [2, 2]\ngravity = [0, 0]\n[physics]\nsolver = \"iterative\"\n"
+      "[[ball]]\nradius = 0.01\nposition = [1, 1]\nvelocity = [90, 0]\nelasticity = 1\n");
+  const Outcome fast = obscura("states scene.toml --at 0.1");
+  EXPECT_NE(fast.err.find("had bodies meet faster than 4,800 substeps a second follow"), std::string::npos)
+      << fast.err;
+  EXPECT_EQ(obscura("states scene.toml --at 0.1 --set 'ball[0].velocity=[1,0]'").err, "");
+}
+
 TEST_F(States, NumbersReadBackToTheBit) {
   scene(kParabola);
   const Outcome once = obscura("states scene.toml --at 0.7");

@@ -245,6 +245,60 @@ TEST(Changing, ChargeDragAndTheFrictionOfAJointAreSet) {
   }
 }
 
+// A kick may be a formula of what was just before: two bodies exchange their velocities, one turns back.
+TEST(Changing, AKickReadsWhatWasBefore) {
+  for (const Manner& manner : kManners) {
+    for (const int dimension : {2, 3}) {
+      const std::string z = dimension == 3 ? ", 0" : "", more = dimension == 3 ? ", \"0\"" : "";
+      const TextRun run(empty_room(manner, dimension) +
+                        disc("a", 2, 0.2, "position = [0, 0" + z + "]\nvelocity = [1, 0.5" + z + "]") +
+                        disc("b", 1, 0.2, "position = [0, -3" + z + "]\nvelocity = [0.2, 0" + z + "]") +
+                        "[[when]]\ntime = 1\ndo = [{ set = \"a.velocity\", to = [\"1.2*a.vx\", \"-a.vy\"" +
+                        more +
+                        "] }]\n[[when]]\ntime = 2\ndo = [{ set = \"a.velocity\", to = [\"b.vx\", \"b.vy\"" +
+                        more + "] }, { set = \"b.velocity\", to = [\"a.vx\", \"a.vy\"" + more + "] }]\n");
+      const sim::Snapshot kicked = run.at(1.5);
+      EXPECT_NEAR(kicked.bodies[0].velocity.x(), 1.2, 1e-12) << manner.name << dimension;
+      EXPECT_NEAR(kicked.bodies[0].velocity.y(), -0.5, 1e-12) << manner.name << dimension;
+      EXPECT_NEAR(kicked.energies.work, 1.2 * 1.2 - 1, 1e-9) << manner.name << dimension;
+      const sim::Snapshot exchanged = run.at(2.5);
+      EXPECT_NEAR(exchanged.bodies[0].velocity.x(), 0.2, 1e-12) << manner.name << dimension;
+      EXPECT_NEAR(exchanged.bodies[1].velocity.x(), 1.2, 1e-12) << manner.name << dimension;
+      EXPECT_NEAR(exchanged.bodies[1].velocity.y(), -0.5, 1e-12) << manner.name << dimension;
+    }
+    const TextRun back(empty_room(manner, 2) + disc("a", 2, 0.2, "position = [0, 0]\nspin = 90") +
+                       "[[when]]\ntime = 1\ndo = [{ set = \"a.spin\", to = \"-2*a.spin/deg\" }]\n");
+    EXPECT_NEAR(back.at(1.5).bodies[0].spin.z(), -kSemicircle, 1e-12) << manner.name;
+  }
+}
+
+// A belt that starts by an event: what lies on it comes to its speed by friction, and sticks.
+TEST(Changing, ABeltStartsAndStops) {
+  for (const Manner& manner : kManners) {
+    for (const int dimension : {2, 3}) {
+      const bool space = dimension == 3;
+      const std::string z = space ? ", 0" : "", depth = space ? ", 1" : "";
+      const std::string speed = space ? "[{}, 0, 0]" : "{}";
+      const auto belt = [&](double v) { return fmt::format(fmt::runtime(speed), v); };
+      const TextRun run(
+          (space ? space_without_walls(manner) : plane_without_walls(manner)) +
+          "[[box]]\nname = \"belt\"\nsize = [12, 0.5" + depth + "]\nposition = [0, -0.25" + z +
+          "]\nfixed = true\nsurface_speed = " + belt(0) +
+          "\nfriction = 0.2\n[[box]]\nname = \"block\"\nsize = [0.4, 0.4" + (space ? ", 0.4" : "") +
+          "]\nmass = 2\nposition = [-2, 0.2" + z +
+          "]\nfriction = 0.2\n[[when]]\ntime = 1\ndo = [{ set = \"belt.surface_speed\", to = " + belt(1) +
+          " }]\n[[when]]\ntime = 2\ndo = [{ set = \"belt.surface_speed\", to = " + belt(0) + " }]\n");
+      const double a = 0.2 * 9.81;
+      EXPECT_NEAR(run.at(1.2).bodies[1].velocity.x(), 0.2 * a, 1e-6) << manner.name << dimension;
+      const sim::Snapshot carried = run.at(1.9);
+      EXPECT_NEAR(carried.bodies[1].velocity.x(), 1, 1e-6) << manner.name << dimension;
+      EXPECT_NEAR(carried.energies.work, 2.0, 2e-3) << manner.name << dimension;  // twice what it has: m v^2
+      EXPECT_NEAR(run.at(2.2).bodies[1].velocity.x(), 1 - 0.2 * a, 1e-6) << manner.name << dimension;
+      EXPECT_NEAR(run.at(3).bodies[1].velocity.x(), 0, 1e-6) << manner.name << dimension;
+    }
+  }
+}
+
 TEST(Changing, WhatCannotBeChangedIsRefused) {
   const std::string room = plane_without_walls(kManners[0]) + disc("a", 1, 0.3, "position = [-2, 0.25]") +
                            disc("c", 1, 0.3, "position = [2, 0]\nfixed = true") +
@@ -258,7 +312,9 @@ TEST(Changing, WhatCannotBeChangedIsRefused) {
   expect(when("set = \"c.mass\", to = 2"), "'c' is fixed, and its mass stays");
   expect(when("set = \"a.mass\", to = -2"), "mass");
   expect(when("set = \"a.velocity\", to = 2"), "'a.velocity': expected [x, y]");
-  expect(when("set = \"a.spin\", to = [1, 2]"), "'a.spin': expected degrees a second");
+  expect(when("set = \"a.spin\", to = [1, 2]"), "'a.spin': expected degrees a second, or an expression");
+  expect(when("set = \"a.velocity\", to = [\"a.vy\", \"1 + d.vx\"]"),
+         "'to', column 5: nothing is called 'd.vx' here");
   expect(when("set = \"band.stiffness\", to = -2"), "stiffness");
   expect(when("set = \"a.radius\", to = 2"), "SPRING.stiffness");
   expect(when("release = \"bend\""), "no body, joint or spring is called 'bend'; did you mean 'band'?");

@@ -556,5 +556,30 @@ TEST(Forces, ARunGoesOnFromWhatWasSaved) {
   EXPECT_NE(std::get<sim::Snapshot>(now).energies.work, 0);
 }
 
+// A force whose centre is a point of a body is a spring between the two, and turns the body.
+TEST(Forces, ACentreMayBeAPointOfABody) {
+  for (const Manner& manner : kManners) {
+    for (const int dimension : {2, 3}) {
+      const bool space = dimension == 3;
+      const std::string z = space ? ", 0" : "", at = space ? "[0.3, 0.1, 0.2]" : "[0.3, 0.1]";
+      const std::string room =
+          empty_room(manner, dimension) + "[[box]]\nname = \"plate\"\nsize = [1, 0.4" +
+          (space ? ", 0.5" : "") + "]\nmass = 2\nposition = [0, 0" + z + "]\n" +
+          disc("bob", 0.5, 0.1, "position = [2, 1" + z + "]\nvelocity = [0.3, 0.5" + z + "]");
+      const TextRun force(room + "[[force]]\nof = \"bob\"\ncenter = { body = \"plate\", at = " + at +
+                          " }\npotential = \"4*(r - 1)^2\"\n");
+      const TextRun spring(room + "[[spring]]\nbetween = [\"bob\", { body = \"plate\", at = " + at +
+                           " }]\nstiffness = 8\nrest_length = 1\n");
+      const sim::Snapshot a = force.at(2), b = spring.at(2);
+      for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_LT((a.bodies[i].position - b.bodies[i].position).norm(), 1e-8) << manner.name << dimension;
+        EXPECT_LT((a.bodies[i].spin - b.bodies[i].spin).norm(), 1e-8) << manner.name << dimension;
+      }
+      EXPECT_GT(a.bodies[0].spin.norm(), 0.05);
+      EXPECT_NEAR(a.energies.total(), b.energies.total(), 1e-8) << manner.name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

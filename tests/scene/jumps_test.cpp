@@ -86,5 +86,89 @@ TEST(Jumps, MotorsAndMotionsHaveThem) {
   }
 }
 
+// A jump at the end of a step, up to rounding: no stage reads what is beyond it.
+TEST(Jumps, AtTheEndOfAStepAreOnTheirSide) {
+  for (int k = 1; k <= 40; ++k) {
+    for (const char* force : {"if(t <= {0}, 0, 6)", "if(t > {0}, 6, 0)", "if(t < {0}, 0, 6)"}) {
+      const TextRun run(pushed(false, kJumpModes[0], 600, fmt::format(fmt::runtime(force), 0.05 * k)));
+      EXPECT_NEAR(run.at(3).bodies[0].velocity.x(), 6 * (3 - 0.05 * k), kAroundJump) << force << k;
+    }
+  }
+}
+
+// --- what is moved at once gives what it holds, bears or drives no more than laws allow
+
+std::string held(const Manner& manner, bool space, const std::string& gravity, const std::string& things) {
+  return fmt::format("{}\n[room]\nsize = [8, 8{}]\nwalls = \"none\"\ngravity = [0, {}{}]\n{}", manner.keys,
+                     space ? ", 8" : "", gravity, space ? ", 0" : "", things);
+}
+
+// a glass of 1 kg on a table that jumps to a velocity at half a second
+std::string set_table(const Manner& manner, bool space, const std::string& motion, double elasticity = 0) {
+  const char *depth = space ? ", 0.6" : "", *z = space ? ", 4" : "";
+  return held(
+      manner, space, "-9.81",
+      fmt::format("[[box]]\nname = \"table\"\nsize = [3, 0.2{0}]\nposition = [3, 0.5{1}]\nmotion = {{ "
+                  "{2} }}\nfriction = 0.2\n[[box]]\nname = \"glass\"\nsize = [0.2, 0.3{3}]\n"
+                  "position = [3, 0.75{1}]\nmass = 1\nfriction = 0.2\nelasticity = {4}\n",
+                  depth, z, motion, space ? ", 0.2" : "", elasticity));
+}
+
+TEST(Jumps, OfATableLeaveAGlassToFrictionAndGravity) {
+  for (const Manner& manner : kManners) {
+    for (const bool space : {false, true}) {
+      const auto at = [&](const std::string& motion, double t, double elasticity = 0) {
+        return TextRun(set_table(manner, space, motion, elasticity)).at(t);
+      };
+      const std::string said = manner.name + (space ? " in space" : "");
+      // pulled away, and a lorry that stops: mu g t
+      EXPECT_NEAR(at("x = \"if(t < 0.5, 0, 2*(t - 0.5))\"", 0.6).bodies[1].velocity.x(), 0.1962, 1e-8)
+          << said;
+      EXPECT_NEAR(at("x = \"max(0, 2*(t - 0.5))\"", 0.6).bodies[1].velocity.x(), 0.1962, 1e-8) << said;
+      EXPECT_NEAR(at("x = \"if(t < 0.5, 0.5*t^2, 0.125)\"", 0.51).bodies[1].velocity.x(), 0.5 - 0.01962, 1e-7)
+          << said;
+      // it falls faster than the glass
+      EXPECT_NEAR(at("y = \"if(t < 0.5, 0, 0.5 - t)\"", 0.51).bodies[1].velocity.y(), -0.0981, 1e-8) << said;
+      // it strikes the glass: Newton's law
+      const double e = std::sqrt(0.25 * 0.8);
+      const sim::Snapshot struck = at("y = \"if(t < 0.5, 0, t - 0.5)\"", 0.51, 0.25);
+      EXPECT_NEAR(struck.bodies[1].velocity.y(), 1 + e - 0.0981, 1e-8) << said;
+      // the blow gave p times the table's velocity
+      const double weight = 9.81 * (struck.bodies[1].position.y() - 0.75);
+      EXPECT_NEAR(struck.energies.work, 1 + e, 1e-6) << said << weight;
+    }
+  }
+}
+
+TEST(Jumps, GoThroughJointsByWhatTheyCanGive) {
+  for (const Manner& manner : kManners) {
+    const auto spin = [&](const std::string& things, double t, std::size_t body) {
+      return TextRun(held(manner, false, "0", things)).at(t).bodies[body].spin.z();
+    };
+    const std::string wheel =
+        "[[ball]]\nname = \"w\"\nradius = 0.5\nmass = 4\nposition = [4, 4]\n"
+        "[[joint]]\nname = \"m\"\ntype = \"pin\"\nbetween = [\"w\", \"room\"]\n";
+    const double deg = std::numbers::pi / 180;
+    // a motor of 2 N m at its aim, which jumps, or is bent; I = 0.5 kg m^2
+    EXPECT_NEAR(spin(wheel + "motor = { speed = \"if(t < 2, 360, -180)\", most = 2 }\n", 2.5, 0),
+                360 * deg - 2, 1e-8)
+        << manner.name;
+    EXPECT_NEAR(spin(wheel + "motor = { angle = \"if(t < 1, 0, 90)\", most = 2 }\n", 1.5, 0), 2, 1e-8)
+        << manner.name;
+    EXPECT_NEAR(spin(wheel + "motor = { angle = \"720*t*(1 - t)*(t < 1)\", most = 100 }\n", 1.01, 0),
+                -720 * deg + 2, 1e-8)
+        << manner.name;
+    // a rotor whose pin rubs, on a base that begins to turn
+    EXPECT_NEAR(
+        spin("[[ball]]\nname = \"base\"\nradius = 0.2\nposition = [4, 4]\nmotion = { angle = \"if(t < 1, 0, "
+             "90*(t - 1))\" }\n[[ball]]\nname = \"rotor\"\nradius = 0.5\nmass = 4\nposition = [4, 4]\n"
+             "[[joint]]\ntype = \"pin\"\nbetween = [\"rotor\", \"base\"]\nfriction = 0.1\n[contact]\n"
+             "ignore = [[\"rotor\", \"base\"]]\n",
+             1.1, 1),
+        0.1 / 0.5 * 0.1, 1e-8)
+        << manner.name;
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

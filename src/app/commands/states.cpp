@@ -218,6 +218,7 @@ int list_events(const StatesFlags& flags, const scene::Scene& scene, sim::Run& r
   const auto outcome = run.at(to);
   if (std::holds_alternative<sim::Stopped>(outcome)) return kInterrupted;
   sink.put(events_text(sim::events_until(run, to), form(flags) == "json", scene.file));
+  tell_limits(scene, limit_notes(run));
   if (const auto* trouble = std::get_if<sim::Trouble>(&outcome)) {
     std::fflush(stdout);
     throw TroubleError(scene.file, *trouble, "");
@@ -240,6 +241,7 @@ int measure(const StatesFlags& flags, const scene::Scene& scene) {
   const bool as_json = form(flags) == "json";
   Sink sink(flags.out);
   const Answers found = answers(scene, asked);
+  tell_limits(scene, found.limit_notes);
   std::string names, values;
   for (std::size_t i = 0; i < asked.size(); ++i) {
     const std::string value = i < found.values.size() ? found.values[i] : "";
@@ -322,6 +324,7 @@ int states(const StatesFlags& flags) {
     first = false;
   }
   if (as_json) put("\n ]}\n");
+  tell_limits(scene, limit_notes(*run));
   if (trouble) {
     std::fflush(stdout);
     throw TroubleError(scene.file, *trouble, "");

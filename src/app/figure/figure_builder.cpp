@@ -13,6 +13,7 @@
 #include "app/run/plots.h"
 #include "app/run/run_marks.h"
 #include "app/run/simulation.h"
+#include "app/run/trouble.h"
 #include "app/run/variation.h"
 #include "draw/compose/annotate.h"
 #include "draw/compose/annotations.h"
@@ -196,6 +197,7 @@ void FigureBuilder::take(const scene::Scene& scene, const std::vector<sim::Ratio
     if (times.size() > 1) panel.words += (said.empty() ? "t = " : ", t = ") + seconds_words(sim::value(time));
     panels_.push_back(std::move(panel));
   }
+  tell_limits(scene, limit_notes(*run));
 }
 
 std::vector<FigureBuilder::Cell> FigureBuilder::cells() const {

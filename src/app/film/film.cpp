@@ -447,6 +447,8 @@ int Filming::finish(Progress& progress, const Simulation& simulation, std::int64
                     movie() ? ", " + bytes_text(double(fs::file_size(made, error))) : "", progress.seconds());
   }
   if (!summary.empty()) progress.finish(frames, summary, output_.form != Output::Form::pipe);
+  for (std::size_t i = 0; i < simulation.runs(); ++i)
+    tell_limits(scene_of_run(i), limit_notes(simulation.run(i)));
   return kDone;
 }
 

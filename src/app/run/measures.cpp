@@ -13,6 +13,7 @@
 #include "app/run/columns.h"
 #include "app/run/origin.h"
 #include "app/run/run_marks.h"
+#include "app/run/trouble.h"
 #include "draw/page/measure.h"
 #include "draw/page/readings.h"
 #include "scene/complaints.h"
@@ -269,6 +270,7 @@ Answers answers(const scene::Scene& scene, const std::vector<Question>& asked) {
       found.values[k] = readers[k] ? text(readers[k](*now)) : state_hash(run->words());
     }
   }
+  found.limit_notes = limit_notes(*run);
   for (std::size_t k = 0; k < asked.size(); ++k)
     if (over_run(asked[k].over)) found.values[k] = text(tallies[k].result(asked[k].over));
   return found;

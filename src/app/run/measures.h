@@ -37,6 +37,7 @@ void check(const std::vector<Question>& asked, const scene::Scene& scene);
 struct Answers {
   std::vector<std::string> values;
   std::optional<sim::Trouble> trouble;
+  std::vector<std::string> limit_notes{};  // app/run/trouble.h
 };
 
 /// Runs a scene as far as the questions need. Throws UsageError where its states have no such number,

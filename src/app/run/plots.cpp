@@ -319,8 +319,8 @@ void join_plots(const std::vector<Ahead::Run>& runs, std::vector<Watched>& watch
       draw::Plot& plot = watched[i].plots[p];
       for (std::size_t k = 0; k < own; ++k) {
         draw::Series& line = plot.lines[k];
-        const std::string name = "\"" + runs[i].look.name + "\"";
-        line.label = own == 1 ? name : line.label + "\", \"" + name;
+        const std::string &run = runs[i].look.name, words = "\"" + draw::in_letters(run) + "\"";
+        line.label = own > 1 ? line.label + "\", \"" + words : draw::contains_mathematics(run) ? run : words;
         line.color = runs[i].look.color;
         if (i > 0) all[p].lines.push_back(line);
       }

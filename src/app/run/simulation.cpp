@@ -245,6 +245,8 @@ const std::optional<sim::Trouble>& Simulation::trouble() const {
   return followed_.front()->trouble();
 }
 
+const sim::Run& Simulation::run(std::size_t number) const { return followed_[number]->run(); }
+
 std::int64_t Simulation::step_before(sim::Rational t, std::size_t run) const {
   return followed_[run]->step_before(t);
 }

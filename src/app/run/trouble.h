@@ -2,9 +2,11 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "scene/scene.h"
 #include "sim/model/trouble.h"
+#include "sim/step/run.h"
 
 namespace obscura::app {
 
@@ -13,6 +15,12 @@ std::string text(const sim::Trouble& trouble);
 
 /// Says, on standard error, where the steps of a scene are too long for its springs or drag.
 void warn_of_steps(const scene::Scene& scene);
+
+/// What makes a run so far less exact: one line for each limit of its solver's work that a step has met.
+std::vector<std::string> limit_notes(const sim::Run& run);
+
+/// Says these, on standard error.
+void tell_limits(const scene::Scene& scene, const std::vector<std::string>& notes);
 
 /// A run that could not go on.
 struct TroubleError : std::runtime_error {

@@ -19,6 +19,7 @@
 #include "app/console/interrupt.h"
 #include "app/console/options.h"
 #include "app/console/progress.h"
+#include "app/console/say.h"
 #include "app/film/film.h"
 #include "app/film/film_page.h"
 #include "app/film/ordered_pipeline.h"
@@ -103,6 +104,8 @@ class Sweep {
     RunResult made;
     try {
       found = answers(scene::parse(text_, file_, variations_.sets(run, sets_)), asked_);
+      for (const std::string& note : found.limit_notes)
+        say(stderr, "{}: note: run {}: {}\n", file_, run + 1, note);
       if (found.trouble) trouble = app::text(*found.trouble), made.exit = kDiverged;
     } catch (const scene::Error& error) {
       trouble = error.complaints.front().text(), made.exit = kScene;

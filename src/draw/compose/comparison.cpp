@@ -192,8 +192,10 @@ void draw_run_names(const std::vector<ComparedRun>& runs, const std::vector<RunI
                     const Rect& window, double weight, const Palette& colours, List& list) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const std::string words = words_of(nows[i]);
-    std::vector<Span> spans{
-        {.text = runs[i].name, .face = Face::bold, .size = kWords * weight, .color = runs[i].color}};
+    std::vector<Span> spans{{.text = in_letters(runs[i].name),
+                             .face = Face::bold,
+                             .size = kWords * weight,
+                             .color = runs[i].color}};
     if (!words.empty())
       spans.push_back({.text = " " + words,
                        .face = Face::medium,

@@ -555,8 +555,11 @@ double Forces<D>::energy_of(const State<D>& state, int body, const BodyMotion<D>
       std::array<double, std::size_t(each_slot::end)> uniform{};
       uniform[each_slot::time] = t;
       if (force.center) {
-        const Vec<D> middle =
-            force.center->body < 0 ? force.center->local : state.x[std::size_t(force.center->body)];
+        Vec<D> middle = force.center->local;
+        if (force.center->body >= 0) {
+          const BodyMotion<D> its = body_motion(state, force.center->body);
+          middle = its.x + its.arm(force.center->local);
+        }
         for (int k = 0; k < D; ++k) uniform[std::size_t(center + k)] = middle[k];
       }
       const Vec<D> place = at.x + at.arm(subject.local);

@@ -343,42 +343,6 @@ struct Articulation {
   std::vector<double> offsets;  // one a link, in the plane: its angle where all q are zero, rad
 };
 
-/// A change of the room that an event makes, for the rest of the run.
-template <int D>
-struct Change {
-  enum class Of {
-    hold,
-    motor,
-    gravity,
-    force,
-    join,
-    loose,  // and other values of a spring
-    stiffness,
-    damping,
-    rest_length,
-    mass,  // and other values of a body
-    charge,
-    drag,
-    quadratic_drag,
-    rub,       // the dry friction of a joint
-    velocity,  // these two at that instant alone
-    spin
-  };
-  Of of = Of::hold;
-  // of the body that is held where it is or gets another value, the joint that gets one or is made, the
-  // force, or the spring
-  int index = -1;
-  double value = 0;                            // SI units; of `loose` whether it is
-  Vec<D> velocity = Vec<D>::Zero();            // m/s
-  AngularVec<D> spin = AngularVec<D>::Zero();  // rad/s, in space in the room's axes
-  typename Joint<D>::Motor motor;
-  Vec<D> gravity = Vec<D>::Zero();
-  std::shared_ptr<const Force<D>> force;
-
-  /// Whether it takes the place of another.
-  bool replaces(const Change& other) const { return of == other.of && index == other.index; }
-};
-
 /// A quantity of a body or joint, as the condition of an event reads it.
 struct Reading {
   enum class Of {
@@ -404,6 +368,46 @@ struct Reading {
   Of of = Of::x;
 
   bool of_forces() const { return of >= Of::contact; }
+};
+
+/// A change of the room that an event makes, for the rest of the run.
+template <int D>
+struct Change {
+  enum class Of {
+    hold,
+    motor,
+    gravity,
+    force,
+    join,
+    loose,  // and other values of a spring
+    stiffness,
+    damping,
+    rest_length,
+    mass,  // and other values of a body
+    charge,
+    drag,
+    quadratic_drag,
+    rub,       // the dry friction of a joint
+    belt,      // the speed of a body's surface
+    velocity,  // these two at that instant alone
+    spin
+  };
+  Of of = Of::hold;
+  // of the body that is held where it is or gets another value, the joint that gets one or is made, the
+  // force, or the spring
+  int index = -1;
+  double value = 0;                            // SI units; of `loose` whether it is
+  Vec<D> velocity = Vec<D>::Zero();            // m/s
+  AngularVec<D> spin = AngularVec<D>::Zero();  // rad/s, in space in the room's axes; of a belt as Body::belt
+  // of a kick that is a formula: its components, SI units, of what is read and the time
+  std::shared_ptr<const Program> formula;
+  std::vector<Reading> reads;
+  typename Joint<D>::Motor motor;
+  Vec<D> gravity = Vec<D>::Zero();
+  std::shared_ptr<const Force<D>> force;
+
+  /// Whether it takes the place of another.
+  bool replaces(const Change& other) const { return of == other.of && index == other.index; }
 };
 
 /// A condition, and what is done when it becomes true: see sim/step/events.h.

@@ -29,6 +29,10 @@ TimeStamp snapped_stamp(Rational t, Rational rate);
 /// The time (s) of a time stamp. step / rate is rounded once while it has less than 53 bits.
 double time(TimeStamp at, Rational rate);
 
+/// How long a piece of a step is in which a formula of the time jumps, of a step (sim/step/jumps.h); no piece
+/// of less than twice that is anything else.
+inline constexpr double kJumpPiece = 1e-9;
+
 /// Length of a step, s.
 inline double step_length(Rational rate) { return double(rate.den) / double(rate.num); }
 

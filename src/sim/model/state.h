@@ -49,6 +49,26 @@ struct Ledger {
   bool operator==(const Ledger&) const = default;
 };
 
+/// Steps since t = 0 in which a limit of a solver's work was met, so that they are less exact.
+struct LimitMet {
+  std::int64_t steps = 0, first = 0, last = -1;  // how many; which of them
+
+  void note(std::int64_t step) {
+    if (step == last) return;
+    if (steps++ == 0) first = step;
+    last = step;
+  }
+  bool operator==(const LimitMet&) const = default;
+};
+
+/// All limits that a solver may meet.
+struct LimitsMet {
+  LimitMet work;      // the exact solver went on by impulses, to the first order in the step
+  LimitMet substeps;  // bodies met faster than the most substeps of the iterative one share out
+
+  bool operator==(const LimitsMet&) const = default;
+};
+
 /// The energy that a run may have: that at the start and that which hands can give. The divergence monitor
 /// compares with it (sim/energy/divergence_monitor.cpp).
 struct EnergyBudget {
@@ -139,6 +159,7 @@ struct State {
   std::vector<Grip<D>> grips;        // one a mouse
   std::vector<Touch<D>> touches;     // of `handout`
   Ledger ledger;
+  LimitsMet limits_met;  // the hash does without
   EnergyBudget energy_budget;
   std::vector<BodySpin<D>> body_spin;    // in space: one a body that turns
   std::vector<Blast<D>> blasts;          // one an explosion

@@ -26,6 +26,10 @@ template <class Visit, int D>
 void fields(Visit& visit, BodySpin<D>& it) {
   visit(it.w), visit(it.residual);
 }
+template <class Visit>
+void fields(Visit& visit, LimitMet& it) {
+  visit(it.steps), visit(it.first), visit(it.last);
+}
 template <class Visit, int D>
 void fields(Visit& visit, Blast<D>& it) {
   visit(it.on), visit(it.forces), visit(it.torques);
@@ -63,6 +67,7 @@ template <class Visit, int D>
 void fields(Visit& visit, State<D>& it) {
   visit(it.step), visit(it.beyond), visit(it.x), visit(it.v), visit(it.turn), visit(it.spin);
   visit(it.grips), visit(it.touches), visit(it.ledger.displacement), visit(it.ledger.impacts);
+  visit(it.limits_met.work), visit(it.limits_met.substeps);
   visit(it.energy_budget.level), visit(it.energy_budget.amount), visit(it.energy_budget.work),
       visit(it.body_spin), visit(it.blasts), visit(it.chain_states);
   visit(it.intact), visit(it.part_poses), visit(it.bonded), visit(it.contacts), visit(it.frozen),

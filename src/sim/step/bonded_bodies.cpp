@@ -302,7 +302,7 @@ template <int D>
 void BondedBodies<D>::tell(State<D>& state) const {
   const State<D>& whole = state.bonded[0];
   state.step = whole.step, state.beyond = whole.beyond, state.ledger = whole.ledger,
-  state.energy_budget = whole.energy_budget;
+  state.limits_met = whole.limits_met, state.energy_budget = whole.energy_budget;
   for (int i = 0; i < int(whole_.body.size()); ++i) {
     const int body = whole_.body[i], k = turning(state, i), kw = turning(whole, body);
     if (whole_.alone[i]) {
@@ -412,7 +412,8 @@ void BondedBodies<D>::split(State<D>& state) {
   gather(state);
 
   State<D> made;
-  made.step = before.step, made.ledger = before.ledger, made.work = before.work;
+  made.step = before.step, made.ledger = before.ledger, made.work = before.work,
+  made.limits_met = before.limits_met;
   std::vector<int> same(parts_before.size(), -1);  // where bodies went that are what they were
   for (int body = 0; body < int(parts_.size()); ++body) {
     const int first = parts_[body][0], old = body_before[first], k = turning(before, old);

@@ -1,5 +1,9 @@
 #include "sim/step/contact_step.h"
 
+#include <algorithm>
+
+#include "sim/solve/iterate/joint_solver.h"
+
 namespace obscura::sim {
 
 namespace {
@@ -23,6 +27,19 @@ ContactStep<D>::ContactStep(const Model<D>& model, const std::vector<Path<D>>& p
     });
   }
   if (!exact_) lone_bodies_ = std::make_unique<LoneBodies<D>>(model, paths);
+}
+
+// links of chains have such velocities by themselves; beads come onto their wires in the first step
+template <int D>
+void ContactStep<D>::begin(State<D>& state) const {
+  const bool linked = std::any_of(model_.joints.begin(), model_.joints.end(),
+                                  [](const Joint<D>& joint) { return joint.linked; });
+  if (model_.joints.empty() || linked || state.step != 0) return;
+  const std::vector<char> broken = state.broken;
+  for (std::size_t i = 0; i < model_.joints.size(); ++i)
+    if (model_.joints[i].kind == JointKind::wire) state.broken[i] = 1;
+  JointSolver<D>(model_).project_initial_velocities(state);
+  state.broken = broken;
 }
 
 template <int D>

@@ -21,6 +21,9 @@ class ContactStep {
   /// Moves `state` from t to t + h (s): bodies, contacts, joints, and which bodies sleep.
   void step(State<D>& state, double t, double h);
 
+  /// Velocities at the start that joints allow: the nearest ones, by the bodies' masses.
+  void begin(State<D>& state) const;
+
   /// The next step knows nothing of the one before: bodies have been let go.
   void begin_anew() { solver_->begin_anew(); }
 

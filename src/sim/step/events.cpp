@@ -162,6 +162,9 @@ void Events<D>::make(const State<D>& state) {
       case Change<D>::Of::rub:
         now_.joints[std::size_t(change.index)].friction = change.value;
         break;
+      case Change<D>::Of::belt:
+        now_.bodies[std::size_t(change.index)].belt = change.spin;
+        break;
       default:
         break;  // of bodies, below: forces have them, too; or of an instant
     }
@@ -452,7 +455,10 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
   if (!state.broken.empty()) break_dependents(model_, state.broken);
   make(state);
   // of what is free now
-  for (const Change<D>* by : kicks) kick(state, *by);
+  if (!kicks.empty()) {
+    const State<D> was = state;
+    for (const Change<D>* by : kicks) kick(state, was, *by, t);
+  }
   const auto given = [&] {
     return energies(stepper_->model(state), state, stepper_->paths(), t).total() - before;
   };
@@ -466,14 +472,28 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
   if (!joined && !kicks.empty() && !state.work.empty()) state.work[0] = worked + given();
 }
 
-// gives a body another velocity or spin
+// gives a body another velocity or spin; formulas read what was before
 template <int D>
-void Events<D>::kick(State<D>& state, const Change<D>& by) {
+void Events<D>::kick(State<D>& state, const State<D>& was, const Change<D>& by, double t) {
   if (now_.bodies[std::size_t(by.index)].fixed) return;
+  Vec<D> velocity = by.velocity;
+  AngularVec<D> spin = by.spin;
+  if (by.formula) {
+    std::vector<double> values;
+    for (const Reading& each : by.reads) values.push_back(read(was, each));
+    values.push_back(t);
+    std::vector<const double*> slots;
+    for (const double& each : values) slots.push_back(&each);
+    Evaluation evaluation(*by.formula);
+    evaluation.begin({});
+    evaluation.run(1, slots);
+    const bool turns = by.of == Change<D>::Of::spin;
+    for (int k = 0; k < by.formula->outputs(); ++k) (turns ? spin[k] : velocity[k]) = evaluation.output(k)[0];
+  }
   if (by.of == Change<D>::Of::velocity) {
-    state.v[std::size_t(by.index)] = by.velocity;
+    state.v[std::size_t(by.index)] = velocity;
   } else if (const int k = turning(state, by.index); k >= 0) {
-    state.spin[std::size_t(k)] = by.spin;
+    state.spin[std::size_t(k)] = spin;
   }
 }
 

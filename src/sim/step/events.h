@@ -115,7 +115,7 @@ class Events {
     int which;
   };
   void change(State<D>& state, const std::vector<Due>& actions, TimeStamp at);
-  void kick(State<D>& state, const Change<D>& by);
+  void kick(State<D>& state, const State<D>& was, const Change<D>& by, double t);
   void known_broken(State<D>& state, int joint, bool broken);
   void jerk(State<D>& state, double fraction, double t);
   void note_truths(State<D>& state, double from, double to);

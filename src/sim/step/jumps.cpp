@@ -6,12 +6,6 @@
 
 namespace obscura::sim {
 
-namespace {
-
-constexpr double kAround = 1e-9;  // of a step: the piece in which the jump lies
-
-}  // namespace
-
 template <int D>
 Jumps<D>::Jumps(const Model<D>& model) : rate_(model.rate) {
   const auto add = [&](const Program& program, int slot) {
@@ -45,19 +39,18 @@ template <int D>
 double Jumps<D>::cut(std::int64_t step, double from, double to) {
   if (formulas_.empty()) return to;
   const auto differs = [&](double at) {
-    levels_at(at < 1 ? TimeStamp{step, at} : TimeStamp{step + 1, 0}, now_);
+    levels_at(at < 1 ? TimeStamp{step, at} : TimeStamp{step + 1, at - 1}, now_);
     return now_ != begun_;
   };
   levels_at({step, from}, begun_);
-  if (!differs(to)) return to;
-  double low = from, high = to;
-  while (high - low > 0.5 * kAround) {
+  // one just behind the end counts: a stage's time there is right up to rounding
+  if (!differs(to + kJumpPiece)) return to;
+  double low = from, high = to + kJumpPiece;
+  while (high - low > 0.5 * kJumpPiece) {
     const double middle = 0.5 * (low + high);
     (differs(middle) ? high : low) = middle;
   }
-  if (low - from > kAround) return low - 0.25 * kAround;
-  high += 0.25 * kAround;
-  return high < to ? high : to;
+  return std::min(to, low - from > kJumpPiece ? low - 0.25 * kJumpPiece : high + 0.25 * kJumpPiece);
 }
 
 template class Jumps<2>;

@@ -46,6 +46,7 @@ class SeenFrom final : public Run {
   BodyColumns columns() const override { return run_->columns(); }
   std::string set(const NewBodyColumns& columns) override { return run_->set(columns); }
   std::vector<RunEvent> events() const override { return run_->events(); }
+  LimitsMet limits_met() const override { return run_->limits_met(); }
   std::vector<std::uint64_t> words() const override { return run_->words(); }
 
   std::variant<Snapshot, Trouble, Stopped> at(Rational t) override {

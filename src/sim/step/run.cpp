@@ -125,6 +125,8 @@ class RunOf final : public Run {
     return all;
   }
 
+  LimitsMet limits_met() const override { return state_.limits_met; }
+
   void track(std::vector<int> bodies) override {
     track_.bodies = std::move(bodies);
     track_.points.assign(track_.bodies.size(), {});

@@ -102,6 +102,9 @@ class Run {
   /// The words of the state that the last snapshot shows (sim/model/state.h).
   virtual std::vector<std::uint64_t> words() const = 0;
 
+  /// The steps so far in which a limit of a solver's work was met.
+  virtual LimitsMet limits_met() const = 0;
+
   /// From now on, keep the ways of these bodies. Requires: before the first at().
   virtual void track(std::vector<int> bodies) = 0;
 
@@ -120,6 +123,7 @@ class RunWithoutSteps : public Run {
   bool restore(std::span<const std::uint64_t>) final { return false; }
   BodyColumns columns() const final { return {}; }
   std::vector<RunEvent> events() const final { return {}; }
+  LimitsMet limits_met() const final { return {}; }
 };
 
 /// What fires up to t, the last instant that the run was asked for, in the order of time. The run goes on to

@@ -140,6 +140,7 @@ void Stepper<D>::begin(State<D>& state) {
     if (wound_ropes_) state.wound.resize(model_.joints.size());
   }
   follow(model_, state);
+  if (contact_) contact_->begin(state);
   state.touches.reserve(2 * model_.bodies.size() + 16);
   touch_script(state, {state.step, 0});
   divergence_.start(state, time({state.step, 0}, model_.rate));

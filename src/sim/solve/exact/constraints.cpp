@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kLeastPart = 1e-3;  // of the way back to where joints belong
 constexpr double kNowhere = 1e-6;    // of the room: a way that is none, of what is on its way back
+constexpr double kCarried = 1e-3;    // of what a motor may do in an interval: an error of the scheme
 constexpr double kJam = 100;  // times what all bodies weigh and are pulled by: a stack's floor bears it once
 
 }  // namespace
@@ -454,10 +455,11 @@ void ExactSolver<D>::pay_for_lift(State<D>& state) {
   if (!active_.subset.chains.empty()) dynamics_.chains().follow(state);
 }
 
-// puts what is held back to where it belongs: places first, then velocities. `impacts_follow`: contacts that
-// approach as in an impact keep their velocities, for the impact to come
+// Puts what is held back to where it belongs: places first, then velocities, after an interval of h s.
+// `impacts_follow`: contacts that approach as in an impact keep their velocities, for the impact to come. So
+// do motors whose aim has jumped, or been bent, by more than they can follow: they are no longer at it.
 template <int D>
-void ExactSolver<D>::project_state(State<D>& state, bool impacts_follow) {
+void ExactSolver<D>::project_state(State<D>& state, double h, bool impacts_follow) {
   using Kind = typename Constraint::Kind;
   const auto again = [&] {
     update_poses(state);
@@ -510,6 +512,8 @@ void ExactSolver<D>::project_state(State<D>& state, bool impacts_follow) {
   if (moved > limits_.touching_gap && !progress_.rough) pay_for_lift(state);
 
   again();
+  // what has jumped strikes what it holds or bears: an impact
+  if (progress_.jumps) return;
   scratch_.chosen.clear();
   worst = 0;
   b_.setZero(rows_.size());
@@ -522,9 +526,13 @@ void ExactSolver<D>::project_state(State<D>& state, bool impacts_follow) {
     const int n = constraint.kind != Kind::contact ? constraint.rows : kind == ModeKind::slide ? 1 : D;
     for (int i = 0; i < n; ++i) {
       const int row = constraint.first + i;
-      const double aimed = aim(constraint).speed;
+      const double off = aim(constraint).speed - row_velocity(row);
+      if (constraint.kind == Kind::motor &&
+          std::abs(off) >
+              still_speed_ + kCarried * h * model_.joints[constraint.of].motor->most * self_coupling(row))
+        continue;
       scratch_.chosen.push_back(row);
-      b_[row] = aimed - row_velocity(row);
+      b_[row] = off;
       worst = std::max(worst, std::abs(b_[row]));
     }
   }

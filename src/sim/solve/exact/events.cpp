@@ -531,7 +531,7 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
 template <int D>
 void ExactSolver<D>::integrate(State<D>& state, double t, double h) {
   const int pieces = limits_.row_joints == 0 || limits_.row_joints > kFewJoints ? 1 : kFiner;
-  interval_.given = 0;
+  interval_.given = 0, interval_.piece = h / pieces;
   for (int i = 0; i < pieces; ++i) {
     dynamics_.step(integrate_, state, t + i * (h / pieces), h / pieces, stages_, this);
     interval_.given += dynamics_.work();

@@ -15,6 +15,7 @@
 
 #include "sim/energy/energy.h"
 #include "sim/force/force_coupling.h"
+#include "sim/model/script.h"
 #include "sim/solve/exact/couples.h"
 
 namespace obscura::sim {
@@ -243,7 +244,8 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   double done = 0;
   int tiny = 0;  // cuts in a row that led nowhere
   progress_.forced.clear(), progress_.forced_again = false;
-  progress_.rough = false, progress_.work = 0, progress_.searches = 0;
+  progress_.jumps = h < 2 * kJumpPiece * step_length(model_.rate);
+  progress_.rough = progress_.limited = false, progress_.work = 0, progress_.searches = 0;
   progress_.openings = limits_.most_openings, progress_.released.reset(), progress_.unclear.clear();
   const bool event_mode = model_.collision == Collision::event;
   const int most_cuts = event_mode ? limits_.most_cuts : active_.lone ? kMostLoneCuts : limits_.most_cuts;
@@ -274,14 +276,14 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
     bool held_again = false;  // what let go is to be held: the same instant once more
     // at a speed of 1e6 room heights a second a step has as many places to search
     if ((progress_.work > limits_.budget || progress_.searches > kManyLooks) && done > 0)
-      progress_.rough = true;
+      progress_.rough = progress_.limited = true;
     const bool chosen = !progress_.rough && solve_modes(state, t + done) && !jammed();
     if (!chosen) progress_.rough = !event_mode;
     if (chosen && spent < most_cuts && tiny <= kStuck) {
       if (progress_.released) release_contact();
       record_forces(state);
       if (event_mode && break_loaded(state, done)) continue;
-      if (coming_apart()) project_state(state);
+      if (coming_apart()) project_state(state, 0);
       // at the friction limit nothing slips: as an equality it is sticking
       interval_.modes = modes_, interval_.loads = loads();
       for (ConeMode<D>& mode : interval_.modes) {
@@ -295,10 +297,11 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
       held_again = progress_.forced.size() > forced && !progress_.forced_again;
       if (length > 0) note_contacts(done, done + length);
       pose_driven(t + done + length);
-      if (length > 0) project_state(state), progress_.given += interval_.given;
+      if (length > 0) project_state(state, length), progress_.given += interval_.given;
       if (cut && !progress_.passes) count_cut(progress_.cut_by.a, progress_.cut_by.b);
     }
     if (length == 0 && !held_again) {
+      progress_.limited = progress_.limited || spent >= most_cuts || tiny > kStuck;
       // no way to go on but a short one at once
       length = std::min(spent < most_cuts && !progress_.rough ? limits_.short_step * h
                                                               : std::max(h / kMostPieces, time_unseen(state)),
@@ -331,6 +334,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
     find_contacts(state, limits_.touching_gap);
   }
   resolve_contact_impacts(state);
+  if (progress_.limited) state.limits_met.work.note(state.step);
   // the forces that joints are shown with and break by are those of the end
   if (!active_.joints.empty() && solve_modes(state, t + h)) record_forces(state);
   // contacts that were pushed apart have another gap now than when their force was found
@@ -408,6 +412,7 @@ void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const 
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_acceleration(i, v_rate) + rows_[i].velocity_product;
   now_ = t;
   for (const Constraint& constraint : constraints_) b_[constraint.first] -= aim(constraint).rate;
+  if (model_.integrator == Integrator::semi_implicit) aim_at_end();
 
   // constraints that hold go on holding
   if (D > 2) turn_slip_directions();
@@ -417,6 +422,24 @@ void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const 
   if (const int work = dynamics_.work_place(); work >= 0) {
     for (int i = 0; i < int(rows_.size()); ++i) v_rate[std::size_t(work)] += f_[i] * given(i);
     v_rate[std::size_t(work)] += motor_power();
+  }
+}
+
+// For semi-implicit Euler: forces of joints that make C = 0 at the end of the step, whose way is h v',
+//   C' + h (J v' + J' v / 2) = 0        C' = J v, which is not yet 0 within the pieces of an interval
+// instead of C'' = 0 at its beginning, which would give what turns the energy of an explicit step. Not where
+// friction goes by these forces.
+// Source: Andersen, Rattle (1983), of its first half.
+template <int D>
+void ExactSolver<D>::aim_at_end() {
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind != Constraint::Kind::joint) continue;
+    const Joint<D>& joint = model_.joints[constraint.of];
+    if (joint.kind == JointKind::wire && joint.friction > 0) continue;
+    for (int i = 0; i < constraint.rows; ++i) {
+      const int row = constraint.first + i;
+      b_[row] += row_velocity(row) / interval_.piece - 0.5 * rows_[row].velocity_product;
+    }
   }
 }
 
@@ -502,7 +525,7 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
       modes_[constraint.block].kind =
           constraint.off < -limits_.touching_gap ? ModeKind::free : ModeKind::at_lower;
   }
-  project_state(state, true);
+  project_state(state, h, true);
 }
 
 template class ExactSolver<2>;

@@ -146,6 +146,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
     double given = 0;                         // by bodies that are moved, J
     double rest_speed = 0;                    // m/s: that of limits_, or more after many cuts
     bool rough = false;                       // forces by Gauss-Seidel from here on
+    bool limited = false;                     // a limit of work was met
+    bool jumps = false;                       // a formula of the time jumps in this piece of a step
     double work = 0;                          // rows^3 solved
     double searches = 0;                      // how often more than once an interval couples were looked at
     int openings = 0;                         // how many more contacts that let go may cut it
@@ -164,6 +166,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     Motion begun;                                 // where it began
     double t = 0;                                 // s, when
     double given = 0;                             // by bodies that are moved within it, J
+    double piece = 0;                             // s: of a step of the scheme
     std::vector<typename Drives<D>::Pace> paces;  // those' fastest within it
     Eigen::VectorXd velocities;                   // J v there
     std::vector<double> aims;                     // of motors there, one a constraint
@@ -262,6 +265,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   AngularVec<D> rounds_of(const State<D>& state, int body) const;
   double given(int row) const;
   double motor_power() const;
+  void aim_at_end();
   JointTurn<D> turn_between(const State<D>& state, const Joint<D>& joint) const;
   JointTurn<D> turn_of(const State<D>& state, const Constraint& constraint) const;
   void collect_constraints(const State<D>& state, double fastest = 1e300);
@@ -283,7 +287,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   double row_acceleration(int row, std::span<const double> rate) const;
   void add_accelerations(int row, double f, std::span<double> rate) const;
   void apply_impulses(State<D>& state, const Row<D>& row, double p, bool places);
-  void project_state(State<D>& state, bool impacts_follow = false);
+  void project_state(State<D>& state, double h, bool impacts_follow = false);
   void pay_for_lift(State<D>& state);
 
   // chain_responses.cpp

@@ -118,7 +118,8 @@ void ExactSolver<D>::solve_impacts(State<D>& state, double bounce) {
     modes_.assign(blocks_.size(), {}), warm_.setZero(Eigen::Index(rows_.size()));
     bool found = solve();
     for (int i = 0; i < kMostRubs && rub(i); ++i) found = solve();
-    if (!found && model_.collision != Collision::event) progress_.rough = true, found = solve();
+    if (!found && model_.collision != Collision::event)
+      progress_.rough = progress_.limited = true, found = solve();
     // what bodies that are moved give is theirs
     double gives = 0;
     for (int i = 0; i < int(rows_.size()); ++i) gives += f_[i] * given(i);

@@ -57,6 +57,8 @@ void Iterative<D>::wake(StepPart<D> step) {
   foresee_speeds(step);
   closing_rate_ = closing_rate(step.h);
   substeps_ = substeps_for(closing_rate_, step.h);
+  if (closing_rate_ * step.h > 1.0001 * kCloser * substeps_)
+    step.state.limits_met.substeps.note(step.state.step);
   notes_.begin(step.state);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/model/drives.h"
+#include "sim/model/script.h"
 #include "sim/motion/forward_dynamics.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/solve/iterate/joint_solver.h"
@@ -104,6 +105,9 @@ class Iterative : public ContactSolver<D> {
   bool moves(int body) const { return inverse_mass(moving_[std::size_t(body)]) > 0; }
   /// Whether this is the first substep of the run.
   static bool starts(StepPart<D> part) { return part.state.step == 0 && part.substep == 0; }
+  /// Whether a formula of the time jumps within a substep of h s: what it drives has its new velocity all the
+  /// while, so that it strikes what it touches.
+  bool jumps(double h) const { return h < 2 * kJumpPiece * step_length(model_.rate); }
   /// Whether overlaps are those that the scene has, too small for it to refuse them.
   bool at_start(const State<D>& state) const { return state.step == 0 && model_.overlap == Overlap::refuse; }
   AllowedOverlap allowed_overlap(const State<D>& state) const {

@@ -316,12 +316,11 @@ void JointSolver<D>::collect_bounded(double h) {
       b.target = aims;
       b.ends = kEndless;
       const Coordinate& begun = begun_motors_[std::size_t(i)];
-      if (hold.load == motor) {
-        b.ends = motors_.lead(i, ends_ - h, h, begun.value);
-      } else {
-        const double aimed = motors_.at(i, ends_ - h, begun.value, begun.rate).speed;
-        if (has_speed(i, begun.rate, aimed, h)) b.ends = begun.value + 0.5 * h * (begun.rate + aims);
-      }
+      // not where it has come to its aim within the step
+      const double aimed = motors_.at(i, ends_ - h, begun.value, begun.rate).speed;
+      if (has_speed(i, begun.rate, aimed, h))
+        b.ends = hold.load == motor ? motors_.lead(i, ends_ - h, h, begun.value)
+                                    : begun.value + 0.5 * h * (begun.rate + aims);
     }
     if (hold.load == load)
       b.target = hold.target;

@@ -593,8 +593,8 @@ void PlaneIterative::move_driven(StepPart<D> part) {
   driven_gain_ = 0;
   for (int i = 0; i < drives_.size(); ++i) {
     const int body = drives_.body(i);
-    const DrivenMotion<D> from = drives_.at(i, part.t);
     const DrivenMotion<D>& to = driven_[i] = drives_.at(i, part.t + part.h);
+    const DrivenMotion<D> from = jumps(part.h) ? to : drives_.at(i, part.t);
     const Motion o{from.at.v[0], from.at.v[1], from.at.w[0], 0}, v{to.at.v[0], to.at.v[1], to.at.w[0], 0};
     old_[body] = o, moving_[body] = v;
     dv_[body] = {v.x - o.x, v.y - o.y, v.w - o.w, 0};

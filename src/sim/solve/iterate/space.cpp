@@ -162,6 +162,10 @@ void SpaceIterative::prepare(const State<D>& state, double t, double h) {
   std::fill(farther_.begin(), farther_.end(), 0);
   for (int i = 0; i < drives_.size(); ++i) {
     const int body = drives_.body(i);
+    if (jumps(h)) {
+      const BodyMotion<D> then = drives_.at(i, t + h).at;
+      stances_[body].v = then.v, stances_[body].w = then.w;
+    }
     moving_[body].v = stances_[body].v, moving_[body].w = stances_[body].w;
     farther_[body] = farther(i, t, h);
     if (!too_fast()) continue;
