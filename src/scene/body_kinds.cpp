@@ -69,7 +69,7 @@ sim::Shape<D> of_shapes(const Fields& fields, int, int, Diagnostics& complaints)
 // clang-format off
 constexpr BodyKind kKinds[] = {
     {.name = "particle", .called = "particle", .plural = "particles",
-     .doc = "A point mass, or a ball if it has a `radius`. It does not turn.",
+     .doc = "A point mass, or a ball if it has a `radius`. It does not turn: friction at its rim gives it no spin, so that angular momentum is lost there; a `[[ball]]` keeps it.",
      .dimension = 0, .instead = "", .turns = false, .handout = true, .own_origin = false, .varies = true,
      .measure = "radius", .stream = 0,
      .keys = [] { return std::vector<Key>{

@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "scene/body_kinds.h"
 #include "scene/expressions.h"
 #include "scene/fields.h"
 #include "scene/joint_words.h"
@@ -112,6 +113,7 @@ void refuse_keys_of_mechanisms(const Fields& fields, JointKind kind, Diagnostics
   only("joints", JointKind::gear, "gear"), only("ratio", JointKind::gear, "gear");
   only("pitch", JointKind::screw, "screw");
   only("turns", JointKind::pulley, "pulley");
+  only("wound", JointKind::pulley, "pulley");
 }
 
 template <int D>
@@ -163,10 +165,11 @@ class Joining {
         if (end.body >= 0 && !world_.model.bodies[std::size_t(end.body)].turns())
           return refuse(
               place,
-              fmt::format(fmt::runtime(is_point(world_.model.bodies[std::size_t(end.body)].shape)
-                                           ? "'{}' is a particle, which does not turn: a {} needs a [[ball]]"
-                                           : "'{}' has rotation = false, and a {} is of bodies that turn"),
-                          world_.model.bodies[std::size_t(end.body)].name, fields_.text("type")));
+              fmt::format(
+                  fmt::runtime(kind_of<D>(world_.model.bodies[std::size_t(end.body)]).called == "particle"
+                                   ? "'{}' is a particle, which does not turn: a {} needs a [[ball]]"
+                                   : "'{}' has rotation = false, and a {} is of bodies that turn"),
+                  world_.model.bodies[std::size_t(end.body)].name, fields_.text("type")));
     }
     const auto held = [&](int end) {
       if (end < 0) return true;

@@ -71,15 +71,49 @@ double side_of_turn(const sim::Vec<2>& a, const sim::Vec<2>& b, const sim::Vec<2
   return u[0] * v[1] - u[1] * v[0] > 0 ? 1 : -1;
 }
 
+struct Side {
+  std::string_view word;
+  double x, y;
+};
+constexpr Side kSides[] = {{"left", -1, 0}, {"right", 1, 0}, {"above", 0, 1}, {"below", 0, -1}};
+
 // On which side a rope from p leaves a wheel at c that it is wound on, as side_of_turn() has it of its way
-// from p to c: on the side on which p lies, left or right of the middle where it is more above or below, else
-// above or below it. Zero: p lies on neither.
-double side_of_winding(const sim::Vec<2>& p, const sim::Vec<2>& c) {
+// from p to c: on that of `given`, else on the side on which p lies, left or right of the middle where it is
+// more above or below, else above or below it. Zero: p lies on neither, or straight on from the side.
+double side_of_winding(const sim::Vec<2>& p, const sim::Vec<2>& c, const Side* given) {
   const sim::Vec<2> far = p - c;
   const bool upright = std::fabs(far[0]) <= std::fabs(far[1]);
-  const sim::Vec<2> side = upright ? sim::Vec<2>(far[0], 0) : sim::Vec<2>(0, far[1]);
+  const sim::Vec<2> side = given     ? sim::Vec<2>(given->x, given->y)
+                           : upright ? sim::Vec<2>(far[0], 0)
+                                     : sim::Vec<2>(0, far[1]);
   const double turn = far[0] * side[1] - far[1] * side[0];  // from c to p
-  return std::fabs(turn) <= kWhole * far.squaredNorm() ? 0 : turn > 0 ? 1 : -1;
+  const double whole = given ? std::sqrt(far.squaredNorm()) : far.squaredNorm();
+  return std::fabs(turn) <= kWhole * whole ? 0 : turn > 0 ? 1 : -1;
+}
+
+// The sides that `wound` gives for the first and the last end, nullptr for "auto"; false, and a complaint,
+// where it says what cannot be.
+bool given_sides(const Fields& fields, const std::array<bool, 2>& wound, std::array<const Side*, 2>& sides,
+                 Diagnostics& complaints) {
+  sides = {};
+  const Node* node = fields.given("wound");
+  for (std::size_t k = 0; node && k < 2; ++k) {
+    const Node& word = node->list()[k];
+    if (word.text() == "auto") continue;
+    const auto found = std::ranges::find(kSides, word.text(), &Side::word);
+    if (found == std::end(kSides)) {
+      complaints.add(word.place, "'wound': expected left, right, above, below or auto");
+      return false;
+    }
+    if (!wound[k]) {
+      complaints.add(word.place, fmt::format("the rope is not wound on a wheel at its {} end: write auto, or "
+                                             "name the wheel in 'between' and in 'over'",
+                                             k == 0 ? "first" : "second"));
+      return false;
+    }
+    sides[k] = &*found;
+  }
+  return true;
 }
 
 // Whether a rope with friction is one that is known: it slides over things, and over several that stand
@@ -176,13 +210,16 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
     return turn.radius > 0 && end.is_text() && wheel.is_text() && end.text() == wheel.text();
   };
   const std::size_t wheels = over->list().size();
+  std::array<bool, 2> wound_on{};
   if (wheels > 0 && turns.size() > 2 && wound(between->list()[1], over->list()[wheels - 1], turns[wheels]))
-    turns.pop_back();
+    turns.pop_back(), wound_on[1] = true;
   if (wheels > 0 && turns.size() > 2 && wound(between->list()[0], over->list()[0], turns[1]))
-    turns.erase(turns.begin());
+    turns.erase(turns.begin()), wound_on[0] = true;
+  std::array<const Side*, 2> sides;
+  if (!given_sides(fields, wound_on, sides, complaints)) return;
   // the first end moves, if one does
   const bool turned_round = turns.front().end.body < 0 && turns.back().end.body >= 0;
-  if (turned_round) std::reverse(turns.begin(), turns.end());
+  if (turned_round) std::reverse(turns.begin(), turns.end()), std::swap(sides[0], sides[1]);
   if (std::all_of(turns.begin(), turns.end(), [&](const Turn<D>& turn) {
         return turn.end.body < 0 || world.model.bodies[std::size_t(turn.end.body)].fixed;
       })) {
@@ -197,19 +234,24 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
   for (const Turn<D>& turn : turns) at.push_back(start(world, turn.end));
   std::vector<double> offsets(std::size_t(n), 0.0);
   if constexpr (D == 2) {
+    // a rope that is wound on a side that is named comes from there
+    std::vector<sim::Vec<D>> by = at;
+    for (const auto& [wheel, side] : {std::pair(0, sides[0]), std::pair(n - 1, sides[1])})
+      if (side) by[std::size_t(wheel)] += turns[std::size_t(wheel)].radius * sim::Vec<D>(side->x, side->y);
     for (int i = 1; i + 1 < n; ++i)
       if (turns[std::size_t(i)].radius > 0)
         offsets[std::size_t(i)] =
             turns[std::size_t(i)].radius *
-            side_of_turn(at[std::size_t(i - 1)], at[std::size_t(i)], at[std::size_t(i + 1)]);
+            side_of_turn(by[std::size_t(i - 1)], by[std::size_t(i)], by[std::size_t(i + 1)]);
     for (const auto& [wheel, next, sign] : {std::tuple(0, 1, -1), std::tuple(n - 1, n - 2, 1)}) {
       const double radius = turns[std::size_t(wheel)].radius;
       if (!(radius > 0)) continue;
-      const double side = sign * side_of_winding(at[std::size_t(next)], at[std::size_t(wheel)]);
+      const double side =
+          sign * side_of_winding(at[std::size_t(next)], at[std::size_t(wheel)], sides[wheel == 0 ? 0 : 1]);
       if (side == 0) {
         complaints.add(over->place,
-                       fmt::format("on which side does the rope leave '{}', on which it is wound? Move "
-                                   "what it goes to a little to one side of its middle",
+                       fmt::format("on which side does the rope leave '{}', on which it is wound? Say it "
+                                   "with 'wound', as in wound = [\"left\", \"auto\"]",
                                    world.model.bodies[std::size_t(turns[std::size_t(wheel)].end.body)].name));
         return;
       }

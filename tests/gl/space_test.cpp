@@ -268,6 +268,23 @@ TEST(Space, ShadowsLieOnTheGroundAwayFromTheLightSoftAndNeverBlack) {
   EXPECT_GT(steps, 8);
 }
 
+// A wall that rises from the ground takes the shadows of what is over it, and hides the ground's.
+TEST(Space, AShadowLiesOnTheSlopeUnderABodyNotOnTheGroundBehindIt) {
+  Made made;
+  made.look.ground = false;
+  const Vec3 place(0, 1.6, 0), on(0, 1.2, 0), normal = Vec3(0.5, std::sqrt(0.75), 0);
+  made.cast.walls.push_back({on, normal});
+  made.box(place, {0.15, 0.05, 0.15}, "orange");
+  Renderer renderer(640, 360);
+  const media::Image image = drawn(renderer, made.picture());
+  const draw::CameraProjection lens = made.depictor().lens(made.now);
+  const Vec3 light = Vec3(-0.6, 1, 0.42).normalized();
+  const Vec3 foot = place - light * ((place - on).dot(normal) / light.dot(normal));
+  const Vec3 under = place - light * (place.y() / light.y());
+  EXPECT_LT(brightness(at(image, lens.page(foot))), 235);
+  EXPECT_GT(brightness(at(image, lens.page(under))), 250) << "behind the slope";
+}
+
 TEST(Space, ABoxThrowsItsShadowOnAnother) {
   Renderer renderer(320, 180);
   const auto top = [&](double height) {

@@ -566,9 +566,9 @@ TEST(Forces, ACentreMayBeAPointOfABody) {
           empty_room(manner, dimension) + "[[box]]\nname = \"plate\"\nsize = [1, 0.4" +
           (space ? ", 0.5" : "") + "]\nmass = 2\nposition = [0, 0" + z + "]\n" +
           disc("bob", 0.5, 0.1, "position = [2, 1" + z + "]\nvelocity = [0.3, 0.5" + z + "]");
-      const TextRun force(room + "[[force]]\nof = \"bob\"\ncenter = { body = \"plate\", at = " + at +
+      const TextRun force(room + "[[force]]\nof = \"bob\"\ncenter = { body = \"plate\", local = " + at +
                           " }\npotential = \"4*(r - 1)^2\"\n");
-      const TextRun spring(room + "[[spring]]\nbetween = [\"bob\", { body = \"plate\", at = " + at +
+      const TextRun spring(room + "[[spring]]\nbetween = [\"bob\", { body = \"plate\", local = " + at +
                            " }]\nstiffness = 8\nrest_length = 1\n");
       const sim::Snapshot a = force.at(2), b = spring.at(2);
       for (std::size_t i = 0; i < 2; ++i) {

@@ -312,5 +312,50 @@ TEST(Joining, WhatCannotBeJoinedIsRefused) {
   EXPECT_EQ(when("join = [\"a\", \"room\"]"), "");
 }
 
+// What a joint held apart touches once the joint is gone, let go or broken; what overlapped, when it has been
+// apart.
+TEST(Joining, WhatAJointHeldTouchesWhenItIsGone) {
+  for (const Manner& manner : kManners) {
+    for (const bool space : {false, true}) {
+      for (const bool breaks : {false, true}) {
+        const std::string z = space ? ", 0" : "", w = space ? ", 0.4" : "";
+        const auto box = [&](const char* name, double y) {
+          return fmt::format(
+              "[[box]]\nname = \"{}\"\nsize = [0.4, 0.4{}]\nmass = 1\nelasticity = 0\nposition = [0, {}{}]\n",
+              name, w, y, z);
+        };
+        const std::string room = fmt::format("[room]\nsize = [4, 4{}]\ncorner = [-2, 0{}]\n{}\n",
+                                             space ? ", 4" : "", space ? ", -2" : "", manner.keys) +
+                                 box("low", 0.2) + box("high", 1.5);
+        const std::string joint =
+            fmt::format("[[joint]]\nname = \"latch\"\ntype = \"rod\"\nbetween = [\"high\", \"low\"]\n{}\n",
+                        breaks ? "breaks = 5" : "");
+        const TextRun run(room + joint +
+                          (breaks ? "" : "[[when]]\ntime = 0.2\ndo = [{ release = \"latch\" }]\n"));
+        const sim::Snapshot now = run.at(2);
+        EXPECT_NEAR(now.bodies[1].position.y(), 0.6, 2e-3) << manner.name << space << breaks;
+        EXPECT_TRUE(now.joints[0].broken) << manner.name << space << breaks;
+      }
+    }
+    // two discs pinned together in the middle of one another come apart at once, and meet again
+    const TextRun pinned(
+        empty_room(manner, 2) + disc("a", 1, 0.3, "position = [0, 0]\nvelocity = [1, 0]") +
+        disc("b", 1, 0.3, "position = [0.2, 0]\nvelocity = [1, 0]\nelasticity = 1") +
+        "[[joint]]\nname = \"pin\"\ntype = \"slider\"\nbetween = [\"a\", \"b\"]\naxis = [0, 1]\n"
+        "[[spring]]\nname = \"s\"\nbetween = [\"a\", \"b\"]\nstiffness = 20\nrest_length = 1\n"
+        "[[when]]\ntime = 0.5\ndo = [{ release = \"pin\" }]\n");
+    double least = 1e9, most = 0;
+    bool apart = false;
+    for (int i = 0; i < 60; ++i) {
+      const sim::Snapshot now = pinned.at(0.5 + 0.02 * i);
+      const double far = (now.bodies[1].position - now.bodies[0].position).norm();
+      apart = apart || far > 0.7;
+      if (apart) least = std::min(least, far), most = std::max(most, far);
+    }
+    EXPECT_GT(most, 1) << manner.name;
+    EXPECT_GT(least, 0.6 - 2e-3) << manner.name;
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

@@ -91,6 +91,31 @@ TEST(Lectures, WhatFliesMovesByTheSchemeThatIsNamed) {
   }
 }
 
+// Those too that are about to touch, at a rate of which each step has several substeps: two balls that fall
+// side by side, and close in slowly.
+TEST(Lectures, SubstepsShareOutTheSchemesOwnStep) {
+  for (const bool space : {false, true}) {
+    for (const std::string scheme : {"euler", "semi-implicit", "midpoint", "rk4"}) {
+      const int n = 20;
+      const double h = 0.02, more = scheme == "euler" ? -n : scheme == "semi-implicit" ? n : 0;
+      const std::string z = space ? ", 0" : "";
+      const TextRun run(
+          (space ? space_without_walls(kManners[2], "gravity = [0, -10, 0]")
+                 : plane_without_walls(kManners[2], "gravity = [0, -10]")) +
+              "[[ball]]\nradius = 0.2\nposition = [0, 5" + z + "]\nspin = " + (space ? "[0, 0, 90]" : "90") +
+              "\n[[ball]]\nradius = 0.2\nposition = [0.41, 5" + z + "]\nvelocity = [-0.02, 0" + z + "]\n",
+          {"physics.integrator=" + scheme, "physics.rate=50"});
+      const sim::Snapshot now = run.at(n * h);
+      for (const sim::Snapshot::Body& body : now.bodies) {
+        EXPECT_NEAR(body.position.y(), 5 - 5 * h * h * (n * n + more), 1e-12) << scheme << space;
+        EXPECT_NEAR(body.velocity.y(), -10 * n * h, 1e-12) << scheme << space;
+      }
+      EXPECT_NEAR(now.bodies[0].spin.z(), std::numbers::pi / 2, 1e-12) << scheme << space;
+      EXPECT_NEAR(now.bodies[0].angle, std::numbers::pi / 2 * n * h, space ? 10 : 1e-12) << scheme;
+    }
+  }
+}
+
 // Semi-implicit Euler holds the energy of a pendulum on a rod, too, for forces of joints are those that end
 // the step on the constraint: it only swings about its value, by an amount of the order of the step.
 TEST(Lectures, SemiImplicitEulerKeepsAPendulumsEnergy) {

@@ -458,6 +458,41 @@ TEST(JointSpring, ASliderSwingsAndIsDamped) {
   }
 }
 
+// A Chinese windlass: two drums on one axle wind up a rope on different sides of it, with a hook in its loop,
+// whose pulley is as wide as both pieces hang apart. The axle turns by
+//   th'' = M g (R - r)/2 / (I_drums + I_hook + M (R - r)^2/4)
+TEST(Pulley, ARopeIsWoundOnTheSideThatIsNamed) {
+  for (const Manner& manner : kManners) {
+    for (const bool mirrored : {false, true}) {
+      const std::string x = mirrored ? "0.1" : "-0.1", R = mirrored ? "right" : "left",
+                        r = mirrored ? "left" : "right";
+      const std::string scene =
+          plane_without_walls(manner) + disc("big", 2, 0.5, "position = [0, 3]") +
+          disc("small", 1, 0.3, "position = [0, 3]") + disc("hook", 6, 0.4, "position = [" + x + ", 0]") +
+          "[[joint]]\ntype = \"pin\"\nbetween = [\"big\", \"room\"]\nat = [0, 3]\n"
+          "[[joint]]\ntype = \"weld\"\nbetween = [\"big\", \"small\"]\nat = [0, 3]\n"
+          "[[joint]]\ntype = \"pulley\"\nbetween = [\"big\", \"small\"]\nover = [\"big\", \"hook\", "
+          "\"small\"]\n";
+      const TextRun run(scene + "wound = [\"" + R + "\", \"" + r +
+                        "\"]\n[contact]\nignore = [[\"big\", \"small\"]]\n");
+      const double M = 6, drums = 0.5 * 2 * 0.25 + 0.5 * 0.09, hook = 0.5 * M * 0.16;
+      const double a = M * 9.81 * 0.1 / (drums + hook + M * 0.01);
+      const sim::Snapshot now = run.at(1);
+      EXPECT_NEAR(now.bodies[0].spin.z(), (mirrored ? -1 : 1) * a, 1e-8) << manner.name;
+      EXPECT_NEAR(now.bodies[2].position.y(), -0.5 * a * 0.1, 1e-8) << manner.name;
+      EXPECT_NEAR(now.bodies[2].position.x(), mirrored ? 0.1 : -0.1, 1e-8) << manner.name;
+      EXPECT_NE(refusal(scene + "wound = [\"left\", \"up\"]\n").find("left, right, above, below or auto"),
+                std::string::npos);
+    }
+  }
+  EXPECT_NE(refusal(plane_without_walls(kManners[0]) + disc("w", 2, 0.5, "position = [0, 3]") +
+                    disc("a", 1, 0.1, "position = [0.5, 0]") +
+                    "[[joint]]\ntype = \"pulley\"\nbetween = [\"a\", \"w\"]\nover = [\"w\"]\n"
+                    "wound = [\"left\", \"auto\"]\n")
+                .find("not wound on a wheel at its first end"),
+            std::string::npos);
+}
+
 // A motor that follows an angle is there; one that follows a speed has gone as far as its integral.
 TEST(JointMotor, FollowsAnAngleOrASpeedOfTime) {
   for (const Manner& manner : kManners) {

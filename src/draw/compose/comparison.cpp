@@ -16,6 +16,7 @@ namespace {
 constexpr double kName = 26, kNameStrip = 46, kNameRise = 13;  // page units at the weight 1
 constexpr double kPanelGap = 22, kPageEdge = 36, kBelowCaption = 8;
 constexpr double kWords = 24, kRow = 34, kPlateAround = 6;  // of words in a window's corner
+constexpr double kTitleLeft = 0.045;                        // of the width of the page
 constexpr std::uint8_t kNamePlate = 200;
 
 Layout page_layout(const Look& look, double aspect, double right, double below, double& top) {
@@ -61,7 +62,9 @@ void add_panel(const List& own, const Rect& panel, List& list) {
 void write_in_corner(const std::vector<Span>& spans, const Rect& window, double weight, int row,
                      const Palette& colours, List& list) {
   const double size = kWords * weight, around = kPlateAround * weight;
-  Text text{{window.x + 3 * around, window.y + kRow * weight * (row + 1)}, Align::left, spans};
+  // not before the title's left end
+  const double x = std::max(window.x + 3 * around, kTitleLeft * (window.x + window.width));
+  Text text{{x, window.y + kRow * weight * (row + 1)}, Align::left, spans};
   const double width = shape(text).width;
   const double left = text.at.x() - around, right = text.at.x() + width + around;
   const double high = text.at.y() - 0.74 * size - around, low = text.at.y() + 0.22 * size + around;
@@ -82,7 +85,7 @@ std::vector<Rect> compared_panels(int n, double across, const Look& look, const 
   const Layout layout = page_layout(look, aspect, right, below + titles.foot, top);
   const double w = layout.weight, strip = kNameStrip * w * look.type_scale, gap = kPanelGap * w;
   // from the caption's left end to its right one
-  const double side = std::max(w * kPageEdge, 0.045 * layout.width), span = layout.width - 2 * side;
+  const double side = std::max(w * kPageEdge, kTitleLeft * layout.width), span = layout.width - 2 * side;
   const double low = layout.height - (below + titles.foot > 0 ? 0 : kPageEdge * w / 2);
   // as many columns as make the world largest
   int columns = 1;

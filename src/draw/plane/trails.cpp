@@ -136,12 +136,11 @@ void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now,
 }
 
 Arrow at_edge(const Rect& window, const Point& away, double weight) {
-  // on the line to it from the window's middle
+  // where it is nearest: what is straight above the picture has its arrow straight below
   const Point half = Point(window.width, window.height) / 2,
-              room = half - Point::Constant(kGoneEdge * weight);
-  const double part = (room.array() / away.cwiseAbs().array().max(1e-9)).minCoeff();
-  const Point tip = Point(window.x, window.y) + half + part * away;
-  return {tip - kGone * weight * away.normalized(), tip};
+              room = half - Point::Constant(kGoneEdge * weight), near = away.cwiseMax(-room).cwiseMin(room);
+  const Point tip = Point(window.x, window.y) + half + near;
+  return {tip - kGone * weight * (away - near).normalized(), tip};
 }
 
 void draw_gone(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {

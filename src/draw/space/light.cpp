@@ -21,12 +21,13 @@ namespace {
 
 using sim::Vec3;
 
-constexpr double kFine = 0.08;   // of kSpread: of the disc that lights thin rods
-constexpr double kFoot = 0.35;   // of a ball's radius: where it is near the ground
-constexpr double kFall = 1.6;    // of the darkness around a contact: how much sooner than straight it falls
-constexpr double kNear = 1e-3;   // least depth over the target's
-constexpr double kSharp = 0.6;   // page units: shadows softer than this take more rays
-constexpr double kLevel = 0.05;  // light that comes from lower throws no shadows on the ground
+constexpr double kFine = 0.08;    // of kSpread: of the disc that lights thin rods
+constexpr double kFoot = 0.35;    // of a ball's radius: where it is near the ground
+constexpr double kFall = 1.6;     // of the darkness around a contact: how much sooner than straight it falls
+constexpr double kBefore = 0.02;  // least depth of what the ground is seen of, over the target's
+constexpr double kNear = 1e-3;    // least depth over the target's
+constexpr double kSharp = 0.6;    // page units: shadows softer than this take more rays
+constexpr double kLevel = 0.05;   // light that comes from lower throws no shadows on the ground
 
 /// From dark to bright, see above.
 struct Tones {
@@ -135,6 +136,13 @@ std::uint32_t stopped(double share) {
 
 GroundShadow::GroundShadow(const Ground& ground, const Light& light, const CameraProjection& lens)
     : ground_(ground), light_(light), lens_(lens), slope_(light.toward.dot(ground.normal)) {
+  // what of it lies before the eye
+  for (std::size_t i = 0; i < ground.loop.size(); ++i) {
+    const Vec3 &a = ground.loop[i], &b = ground.loop[(i + 1) % ground.loop.size()];
+    const double at_a = lens.depth(a) - kBefore, at_b = lens.depth(b) - kBefore;
+    if (at_a >= 0) bound_.push_back(lens.page(a));
+    if ((at_a < 0) != (at_b < 0)) bound_.push_back(lens.page(a + (b - a) * (at_a / (at_a - at_b))));
+  }
   plumb_ = ray(ground.normal);
   if (slope_ <= kLevel) return;
   for (int i = 0; i < kRays; ++i) rays_[i] = ray(light.rays[i]), fine_[i] = ray(light.fine[i]);
@@ -156,6 +164,30 @@ GroundShadow::Ray GroundShadow::ray(const Vec3& along) const {
     r.round[k] = seen(along.norm() / down * std::cos(a) * u + std::sin(a) * v);
   }
   return r;
+}
+
+// what of outline_ falls on the ground's own part
+void GroundShadow::put(std::vector<Solids::Shade>& where, std::uint32_t rays, Solids& solids) {
+  const std::size_t sides = bound_.size();
+  double area = 0;
+  const auto turn = [](const Point& a, const Point& b) { return a.x() * b.y() - a.y() * b.x(); };
+  for (std::size_t i = 0; i < sides; ++i) area += turn(bound_[i], bound_[(i + 1) % sides]);
+  for (std::size_t i = 0; i < sides; ++i) {
+    const Point& from = bound_[i];
+    const Point along = bound_[(i + 1) % sides] - from;
+    const auto inside = [&](const Point& p) { return turn(along, p - from) * (area > 0 ? 1 : -1); };
+    cast_.swap(outline_), outline_.clear();
+    for (std::size_t k = 0; k < cast_.size(); ++k) {
+      const Point &a = cast_[k], &b = cast_[(k + 1) % cast_.size()];
+      const double at_a = inside(a), at_b = inside(b);
+      if (at_a >= 0) outline_.push_back(a);
+      if ((at_a < 0) != (at_b < 0)) outline_.push_back(a + (b - a) * (at_a / (at_a - at_b)));
+    }
+  }
+  if (outline_.size() < 3) return;
+  const int begin = int(solids.points.size());
+  solids.points.insert(solids.points.end(), outline_.begin(), outline_.end());
+  where.push_back({begin, int(solids.points.size()), rays});
 }
 
 void GroundShadow::cast(std::span<const Vec3> corners, double radius, bool many, std::uint32_t rays,
@@ -197,10 +229,7 @@ void GroundShadow::cast(std::span<const Vec3> corners, double radius, bool many,
     // shadows that reach behind the eye are far outside the page or all over it
     if (behind || cast_.size() < 3) continue;
     hull(cast_, outline_);
-    if (outline_.size() < 3) continue;
-    const int begin = int(solids.points.size());
-    solids.points.insert(solids.points.end(), outline_.begin(), outline_.end());
-    solids.shades.push_back({begin, int(solids.points.size()), own & rays});
+    put(solids.shades, own & rays, solids);
   }
 }
 
@@ -228,10 +257,7 @@ void GroundShadow::touch(std::span<const Vec3> corners, double radius, double re
     }
     if (behind || cast_.size() < 3) continue;
     hull(cast_, outline_);
-    if (outline_.size() < 3) continue;
-    const int begin = int(solids.points.size());
-    solids.points.insert(solids.points.end(), outline_.begin(), outline_.end());
-    solids.touches.push_back({begin, int(solids.points.size()), ((1u << share) - 1) << i});
+    put(solids.touches, ((1u << share) - 1) << i, solids);
   }
 }
 

@@ -46,6 +46,7 @@ Color edge(Color own, Theme theme);
 /// A plane of the ground, as far as it takes shadows.
 struct Ground {
   sim::Vec3 point = sim::Vec3::Zero(), normal = sim::Vec3::UnitY();
+  std::vector<sim::Vec3> loop{};  // around where it takes them, a convex polygon; empty: everywhere
 };
 
 /// Which of the light's rays a body stops that is matter in this share of its form: a coil lets light
@@ -84,7 +85,10 @@ class GroundShadow {
   void cast(std::span<const sim::Vec3> corners, double radius, bool many, std::uint32_t rays, bool fine,
             Solids& solids);
 
+  void put(std::vector<Solids::Shade>& where, std::uint32_t rays, Solids& solids);
+
   Ground ground_;
+  std::vector<Point> bound_;  // its loop on the page
   Light light_;
   CameraProjection lens_;
   double slope_;                     // how straight the light comes down

@@ -359,8 +359,8 @@ void cast_on_each_other(SpaceFrame& s) {
   add_vertices(s, lit);
 }
 
-void cast_on_ground(SpaceFrame& s) {
-  GroundShadow fall(*s.stage.ground, s.stage.light, s.lens);
+void cast_on_ground(SpaceFrame& s, const Ground& ground) {
+  GroundShadow fall(ground, s.stage.light, s.lens);
   const auto& pieces = s.stage.pieces;
   const bool many = pieces.size() > 64;
   constexpr std::uint32_t all = ~0u;
@@ -390,13 +390,15 @@ void cast_on_ground(SpaceFrame& s) {
 
 void add_shadows(SpaceFrame& s) {
   cast_on_each_other(s);
-  const bool above = s.stage.ground &&
-                     s.stage.ground->normal.dot(
-                         s.lens.perspective() ? Vec3(s.lens.eye() - s.stage.ground->point) : s.lens.back) > 0;
-  if (!above) return;
+  const auto above = [&](const Ground& ground) {
+    return ground.normal.dot(s.lens.perspective() ? Vec3(s.lens.eye() - ground.point) : s.lens.back) > 0;
+  };
+  if (!s.stage.ground || !above(*s.stage.ground)) return;
   s.solids.shade = s.stage.look.theme == Theme::paper ? Color{0x14, 0x1A, 0x24, 62} : Color{0, 0, 0, 148};
   s.solids.touch = s.stage.look.theme == Theme::paper ? Color{0x14, 0x1A, 0x24, 90} : Color{0, 0, 0, 150};
-  cast_on_ground(s);
+  cast_on_ground(s, *s.stage.ground);
+  for (const Ground& slope : s.stage.slopes)
+    if (above(slope)) cast_on_ground(s, slope);
 }
 
 }  // namespace obscura::draw

@@ -14,8 +14,9 @@ using sim::Vec3;
 constexpr double kStripGap = 8;                      // page units
 constexpr double kPanelName = 24, kPanelStrip = 44;  // em of a panel's name, and the height that it takes
 constexpr double kFar = 200;                         // of the scale: how far an open room is cut off
-constexpr double kRoundMargin = 1.12;                // bodies without walls around them get this much room
-constexpr double kRunMargin = 1.06;                  // and where it is known how far they go, this much
+constexpr double kRises = 0.2;         // least share of up in the normal of a wall that takes shadows
+constexpr double kRoundMargin = 1.12;  // bodies without walls around them get this much room
+constexpr double kRunMargin = 1.06;    // and where it is known how far they go, this much
 
 Piece ball(int body, const Vec3& at, double radius) {
   Piece piece;
@@ -187,6 +188,16 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
     ground = Ground{cast.walls[room.faces[f].side].point, normal};
     ground_face = int(f);
   }
+  // walls that rise from it take shadows, too, each those that fall on its own part
+  const auto on = [&](std::size_t f) {
+    Ground it{cast.walls[std::size_t(room.faces[f].side)].point, -room.faces[f].normal};
+    for (const int v : room.faces[f].loop) it.loop.push_back(room.vertices[std::size_t(v)]);
+    return it;
+  };
+  for (std::size_t f = 0; ground && f < room.faces.size(); ++f)
+    if (int(f) != ground_face && room.faces[f].side >= 0 && -room.faces[f].normal.y() > kRises)
+      slopes.push_back(on(f));
+  if (!slopes.empty()) ground = on(std::size_t(ground_face));
 
   // bodies, piece by piece
   const std::vector<char> net = knots(cast);

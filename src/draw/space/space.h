@@ -56,8 +56,9 @@ struct SpaceStage {
   Polyhedron room;            // what the walls leave of space
   bool closed = false;
   std::optional<Ground> ground;
-  int ground_face = -1;  // of the room
-  double reach = 1;      // m: how far what is fitted is across
+  std::vector<Ground> slopes;  // walls that rise from it
+  int ground_face = -1;        // of the room
+  double reach = 1;            // m: how far what is fitted is across
   double force_scale = 0;
   std::vector<Coil> coils, hands;  // turns 0: a plain line
 

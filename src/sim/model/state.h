@@ -136,6 +136,9 @@ struct Wound {
   bool operator==(const Wound&) const = default;
 };
 
+/// Of a joint in State::broken.
+inline constexpr char kGoneApart = 2;
+
 /// How the ends of a joint stood when an event made it, which is how it holds them.
 template <int D>
 struct Made {
@@ -181,7 +184,8 @@ struct State {
   std::vector<Contact<D>> contacts;  // sorted by key
   std::vector<char> frozen;          // one a body: asleep, at rest by proof; steps leave it alone
   std::vector<double> quiet;         // one a body: sleep timer, how long it has been still, s
-  std::vector<char> broken;          // one a joint
+  std::vector<char> broken;          // one a joint: 1 where it has broken or was let go, kGoneApart where its two
+                                     // bodies have been apart since, and touch as others do
   std::vector<Vec<D>> joint_forces;  // one a joint: on its a, N
   // and the torque on it about its place, N m; the hash does without, as all is said by the rest
   std::vector<AngularVec<D>> joint_torques;

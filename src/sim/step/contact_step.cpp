@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sim/model/body_motion.h"
 #include "sim/solve/iterate/joint_solver.h"
 
 namespace obscura::sim {
@@ -10,23 +11,63 @@ namespace {
 
 // gains that the energy guard allows an island
 constexpr double kAll = 1e300;
-constexpr double kSinks = 1e-6;  // of m g times the height of the room
+constexpr double kSinks = 1e-6;    // of m g times the height of the room
+constexpr double kTouches = 1e-9;  // of that height: an overlap that is none
 
 }  // namespace
 
 template <int D>
 ContactStep<D>::ContactStep(const Model<D>& model, const std::vector<Path<D>>& paths)
-    : model_(model),
-      exact_(solver_kind(solver(model)).exact),
-      solver_(make_contact_solver(model, paths)),
-      energy_guard_(model) {
+    : model_(model), paths_(paths), exact_(solver_kind(solver(model)).exact), energy_guard_(model) {
+  apart_.assign(model.joints.size(), 0);
   jointed_.assign(model.bodies.size(), 0);
   for (const Joint<D>& joint : model.joints) {
     joint.each_body([&](int body) {
       if (body >= 0) jointed_[std::size_t(body)] = 1;
     });
   }
-  if (!exact_) lone_bodies_ = std::make_unique<LoneBodies<D>>(model, paths);
+  build(model);
+}
+
+template <int D>
+void ContactStep<D>::build(const Model<D>& model) {
+  solver_ = make_contact_solver(model, paths_);
+  if (!exact_) lone_bodies_ = std::make_unique<LoneBodies<D>>(model, paths_);
+  watch(course_);
+}
+
+// bodies whose joint has gone, and which have been apart since, may touch
+template <int D>
+void ContactStep<D>::let_touch(const State<D>& state) {
+  bool changed = false, any = false;
+  for (std::size_t i = 0; i < apart_.size(); ++i) {
+    const char now = state.broken[i] == kGoneApart;
+    changed = changed || now != apart_[i], any = any || now;
+    apart_[i] = now;
+  }
+  if (!changed) return;
+  auto freed = any ? std::make_unique<Model<D>>(model_) : nullptr;
+  for (std::size_t i = 0; i < apart_.size(); ++i)
+    if (apart_[i]) freed->joints[i].touching = true;
+  build(freed ? *freed : model_);
+  freed_ = std::move(freed);
+}
+
+// those that are
+template <int D>
+void ContactStep<D>::find_apart(State<D>& state) {
+  for (std::size_t i = 0; i < apart_.size(); ++i) {
+    const Joint<D>& joint = model_.joints[i];
+    const int a = joint.a.body, b = joint.b.body;
+    if (state.broken[i] != 1 || joint.touching || joint.later || a < 0 || b < 0 ||
+        joint.kind == JointKind::pulley || joint.kind == JointKind::gear)
+      continue;
+    near_.clear();
+    collide(a, model_.bodies[std::size_t(a)].shape, body_motion(state, a), b,
+            model_.bodies[std::size_t(b)].shape, body_motion(state, b), 0, near_);
+    const auto deep = [&](const ContactCandidate<D>& it) { return it.value < -kTouches * model_.scale; };
+    if (std::none_of(near_.begin(), near_.end(), deep)) state.broken[i] = kGoneApart;
+  }
 }
 
 // links of chains have such velocities by themselves; beads come onto their wires in the first step
@@ -44,6 +85,7 @@ void ContactStep<D>::begin(State<D>& state) const {
 
 template <int D>
 void ContactStep<D>::step(State<D>& state, double t, double h) {
+  let_touch(state);
   // contacts that separate within the step are not reported after it
   touched_.clear();
   for (const Contact<D>& contact : state.contacts) {
@@ -56,6 +98,7 @@ void ContactStep<D>::step(State<D>& state, double t, double h) {
   solver_->step(state, t, h);
   if (lone_bodies_) lone_bodies_->step(state, t, h);
   take_energy_back(state);
+  find_apart(state);
 }
 
 // contacts may only take energy
@@ -73,7 +116,12 @@ void ContactStep<D>::take_energy_back(State<D>& state) {
   // with overlap = "separate" bodies that overlap at the start may be lifted
   if (model_.overlap == Overlap::separate || !energy_guard_.risen(state)) return;
   for (const auto& [a, b] : touched_) energy_guard_.touch(a, b);
-  for (const Contact<D>& contact : state.contacts) energy_guard_.touch(contact.key.a, contact.key.b);
+  for (const Contact<D>& contact : state.contacts) {
+    // what is near and has given nothing has added none
+    if (exact_ || contact.touching != ContactMode::open || !contact.force.isZero(0) ||
+        !contact.impulse.isZero(0))
+      energy_guard_.touch(contact.key.a, contact.key.b);
+  }
   if (const std::vector<char>* pushed = solver_->pushed_by_joints()) {
     for (int i = 0; i < int(pushed->size()); ++i) {
       if ((*pushed)[std::size_t(i)]) energy_guard_.touch(i);

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/collide/narrow_phase.h"
 #include "sim/energy/energy_guard.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/solve/exact/lone_bodies.h"
@@ -29,19 +30,28 @@ class ContactStep {
 
   /// Notes how bodies go through a step, from now on.
   void watch(Course<D>* course) {
+    course_ = course;
     solver_->watch(course);
     if (lone_bodies_) lone_bodies_->watch(course);
   }
 
  private:
+  void let_touch(const State<D>& state);
+  void build(const Model<D>& model);
+  void find_apart(State<D>& state);
   void take_energy_back(State<D>& state);
 
   const Model<D>& model_;
+  const std::vector<Path<D>>& paths_;
+  Course<D>* course_ = nullptr;
+  std::vector<char> apart_;          // joints of kGoneApart, as the solver knows them
+  std::unique_ptr<Model<D>> freed_;  // the model without what these forbid; null: there are none
   bool exact_;
   std::unique_ptr<ContactSolver<D>> solver_;
   EnergyGuard<D> energy_guard_;
   std::unique_ptr<LoneBodies<D>> lone_bodies_;  // beside a solver for many
   std::vector<std::pair<int, int>> touched_;
+  std::vector<ContactCandidate<D>> near_;
   std::vector<char> jointed_;  // one a body
 };
 

@@ -419,7 +419,8 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
           break;
         }
         case Action::Do::part:
-          if (std::size_t(of) < state.broken.size()) state.broken[std::size_t(of)] = 1;
+          if (std::size_t(of) < state.broken.size() && !state.broken[std::size_t(of)])
+            state.broken[std::size_t(of)] = 1;
           known_broken(state, of, true);
           std::erase_if(changes, [&](int c) {
             const Change<D>& it = model_.changes[std::size_t(c)];

@@ -449,7 +449,7 @@ void JointSolver<D>::project_initial_velocities(State<D>& state) {
   double fastest = 0;
   for (const Row<D>& row : rows_) fastest = std::max(fastest, std::fabs(speed(row, at_)));
   if (fastest <= kApart * model_.scale) return;
-  solve_positions();
+  for (int round = 0; round < 2; ++round) solve_positions();  // the second for the rounding of the first
   for (const int i : bodies_) {
     if (!response_.moves(i)) continue;
     state.v[i] = at_[i].v;

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/math/exponential.h"
 #include "sim/solve/iterate/substeps.h"
 
 namespace obscura::sim {
@@ -446,15 +447,25 @@ Orientation<3> SpaceIterative::begun_turn(int body) const {
   return k < 0 ? no_rotation<D>() : turn_[std::size_t(k)];
 }
 
+// By the scene's scheme, which for the whole step is shared out where it is of first order: of Euler's or the
+// semi-implicit one five substeps would be another motion. Bodies on joints go by substeps.
 void SpaceIterative::move_unconstrained(StepPart<D> part) {
   State<D>& state = part.state;
-  dynamics_.gather(state, true);
-  stages_.reserve(std::size_t(dynamics_.size()));
+  const bool shared =
+      joints_.empty() && substeps_ > 1 &&
+      (model_.integrator == Integrator::euler || model_.integrator == Integrator::semi_implicit);
   double work = 0;
-  if (joints_.empty()) {
+  if (shared) {
+    if (part.substep == 0) work = integrate_step(part);
+    share_free_motion(state, part.h);
+  } else if (joints_.empty()) {
+    dynamics_.gather(state, true);
+    stages_.reserve(std::size_t(dynamics_.size()));
     dynamics_.step(integrate(model_.integrator), state, part.t, part.h, stages_);
     work = dynamics_.work();
   } else {
+    dynamics_.gather(state, true);
+    stages_.reserve(std::size_t(dynamics_.size()));
     poses_to_joints();
     work = joints_.step(dynamics_, integrate(model_.integrator), state, part.t, part.h, stages_);
   }
@@ -466,6 +477,50 @@ void SpaceIterative::move_unconstrained(StepPart<D> part) {
     if (inactive_[i]) continue;
     moving_[i].v = state.v[i];
     if (const int k = turning(state, i); k >= 0) moving_[i].w = state.spin[k];
+  }
+}
+
+// gains_ and bends_: by how much the scheme changes each velocity in the step without contacts, and leads
+// each body aside of the mean velocity's way. The work of forces, J.
+double SpaceIterative::integrate_step(StepPart<D> part) {
+  State<D>& state = part.state;
+  const double h = substeps_ * part.h;
+  dynamics_.gather(state, true);
+  stages_.reserve(std::size_t(dynamics_.size()));
+  const std::vector<Vec<D>> v = state.v, w = state.spin;
+  const std::vector<Orientation<D>> turn = state.turn;
+  const std::vector<BodySpin<D>> own = state.body_spin;
+  dynamics_.step(integrate(model_.integrator), state, part.t, h, stages_);
+  const std::size_t n = v.size(), turning = w.size();
+  gains_.resize(n), bends_.resize(n), spin_gains_.resize(turning), turn_bends_.resize(turning);
+  for (std::size_t i = 0; i < n; ++i) {
+    gains_[i] = state.v[i] - v[i];
+    bends_[i] = state.x[i] - x_[i] - h * (v[i] + 0.5 * gains_[i]);
+  }
+  for (std::size_t k = 0; k < turning; ++k) {
+    spin_gains_[k] = state.spin[k] - w[k];
+    const auto mean = turned<D>(turn[k], AngularVec<D>(h * (w[k] + 0.5 * spin_gains_[k])));
+    turn_bends_[k] = logarithm(product(state.turn[k], inverse<D>(mean)));
+  }
+  state.x = x_, state.v = v, state.spin = w, state.turn = turn, state.body_spin = own;
+  return dynamics_.work();
+}
+
+// the part of these that falls to a substep of h s
+void SpaceIterative::share_free_motion(State<D>& state, double h) {
+  const double part = 1 / double(substeps_);
+  const std::size_t still = state.v.size() - state.spin.size();
+  for (std::size_t i = 0; i < state.v.size(); ++i) {
+    if (inactive_[i]) continue;
+    const Vec<D> gain = part * gains_[i];
+    state.x[i] += h * (state.v[i] + 0.5 * gain) + part * bends_[i];
+    state.v[i] += gain;
+    if (i < still) continue;
+    const std::size_t k = i - still;
+    const AngularVec<D> more = part * spin_gains_[k];
+    state.turn[k] =
+        turned<D>(state.turn[k], AngularVec<D>(h * (state.spin[k] + 0.5 * more) + part * turn_bends_[k]));
+    state.spin[k] += more;
   }
 }
 

@@ -164,6 +164,8 @@ class SpaceIterative final : public Iterative<3> {
   }
   Vec<D> belt(const ContactConstraint& touch) const;
   Vec<D> drift(int touch, const State<D>& state, double h) const;
+  double integrate_step(StepPart<D> part);
+  void share_free_motion(State<D>& state, double h);
   void move_driven(State<D>& state, double t, double h);
   double given(const Vec<D>& impulse, const BodyMotion<D>& a, int body_a, const Vec<D>& arm_a,
                const BodyMotion<D>& b, int body_b, const Vec<D>& arm_b) const;
@@ -202,7 +204,8 @@ class SpaceIterative final : public Iterative<3> {
   double found_for_ = 0;                           // s: of what time within the step
   std::vector<ContactCandidate<D>> row_features_;  // while impacts are resolved: those of the rows
   std::vector<int> all_, some_;
-  std::vector<Vec<D>> x_, x_free_, v_free_;
+  std::vector<Vec<D>> x_, x_free_, v_free_, gains_, bends_;
+  std::vector<AngularVec<D>> spin_gains_, turn_bends_;
   std::vector<Orientation<D>> turn_, turn_free_;
   std::vector<AngularVec<D>> w_free_;
   std::vector<char> closing_;
