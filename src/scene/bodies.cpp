@@ -363,7 +363,10 @@ void declaration(BuilderContext<D>& making, const Node& table, const BodyKind& i
 
   // how many, and how each lies from the one before
   const auto copies = scene::copies<D>(fields, kind, group.first, complaints);
-  if (!copies) return;
+  if (!copies) {
+    making.roster.wrong.insert(group.name);
+    return;
+  }
   const bool copied = copies->asked;
   if (copied) group.grid = copies->sides;
   group.count = copies->count();
@@ -371,6 +374,7 @@ void declaration(BuilderContext<D>& making, const Node& table, const BodyKind& i
 
   if (!fields.given("position") && !making.room.bounds && copies->places.empty() && !path_start<D>(fields)) {
     complaints.add(fields.place(), fmt::format("[[{}]] needs 'position': an open room has no middle", kind));
+    making.roster.wrong.insert(group.name);
     return;
   }
   making.knots = knots_a_net(making.top, group.name);

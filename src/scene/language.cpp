@@ -285,7 +285,7 @@ std::vector<Key> rows() {
       {.path = "joint.length", .form = number, .unit = "m", .absent = "as long as it is at the start", .range = kPositive,
        .doc = "For a rope, or a pulley without wheels: its length, which may be more than the distance at the start. For a rod: only the distance at the start; to change it, move an end.", .example = "0.5"},
       {.path = "joint.over", .form = places, .absent = "it is no pulley",
-       .doc = "For a pulley: what its rope runs over, from the first end to the second. Points are slid over; in the plane a ball that turns, by its name, is a wheel, which the rope turns; one that is fixed, with `friction`, is a post.",
+       .doc = "For a pulley: what its rope runs over, from the first end to the second. Points are slid over; in the plane a ball that turns, by its name, is a wheel, which the rope turns; one that is fixed, with `friction`, is a post, and without it holds the rope, which does not slip there.",
        .example = "[[3, 4], { body = \"hook\", at = \"top\" }, \"wheel\"]"},
       {.path = "joint.turns", .form = integer, .absent = "0", .range = {0, 100},
        .doc = "For a pulley with friction: whole turns of the rope more around each that it runs over.", .example = "2"},

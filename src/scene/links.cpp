@@ -198,6 +198,13 @@ std::vector<NameRange> springs(const Node& top, const Seating<D>& roster, sim::W
       spring.damping = number(fields.node("damping"), i, n);
       spring.rest_length =
           rest ? number(*rest, i, n) : (start(world, spring.b) - start(world, spring.a)).norm();
+      if (!spring.loose && spring.rest_length > 0 && start(world, spring.a) == start(world, spring.b)) {
+        complaints.add(between->place,
+                       fmt::format("both ends of {} are at one place, and it is {} m long at rest: it has no "
+                                   "direction to push; move one end a little",
+                                   automatic(fields, "spring", k), spring.rest_length));
+        break;
+      }
       world.model.springs.push_back(spring);
     }
     ranges.push_back({automatic(fields, "spring", k), first, int(world.model.springs.size())});

@@ -34,6 +34,7 @@ sim::Vec<D> Seat<D>::seen(const sim::Vec<D>& typed) const {
 
 const Group* NameTable::group(const std::string& name, Place place, Diagnostics& complaints) const {
   if (const auto found = index.find(name); found != index.end()) return &groups[std::size_t(found->second)];
+  if (wrong.count(name) > 0) return nullptr;
   std::vector<std::string_view> names;
   if (!complaints.enough())
     for (const Group& each : groups) names.push_back(each.name);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,12 +24,13 @@ struct Group {
 struct NameTable {
   std::vector<Group> groups;
   std::map<std::string, int, std::less<>> index;     // name -> group
+  std::set<std::string, std::less<>> wrong;          // names of bodies that could not be made, which is told
   std::map<std::string, int, std::less<>> families;  // what `group` says -> Body::group
 
   /// The bodies that a reference means ("ball", "ball[3]", "ball[*]"). Complains at `place` and gives none
   /// where there are none such.
   std::vector<int> bodies(const std::string& reference, Place place, Diagnostics& complaints) const;
-  /// The group of a name. Complains at `place` where there is none.
+  /// The group of a name. Complains at `place` where there is none, and has been none wrong.
   const Group* group(const std::string& name, Place place, Diagnostics& complaints) const;
 };
 

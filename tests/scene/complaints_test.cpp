@@ -544,5 +544,15 @@ TEST(Diagnostics, ColumnsCountCodePoints) {
               ElementsAre(StartsWith("a.toml:2:13: "), StartsWith("a.toml:2:19: ")));
 }
 
+// A body that is wrong is told once, and not again wherever it is named.
+TEST(Diagnostics, AWrongBodyIsToldOnce) {
+  EXPECT_THAT(wrong("[room]\nsize = [4, 4]\n[[ball]]\nname = \"b\"\nposition = [1, 1]\n"
+                    "copies = { at = [[1, 1], [2, 2]] }\n[[ball]]\nname = \"c\"\nposition = [3, 3]\n"
+                    "[[spring]]\nbetween = [\"b[0]\", \"c\"]\n[[joint]]\nname = \"j\"\ntype = \"rod\"\n"
+                    "between = [\"b[1]\", \"c\"]\n[[when]]\nvalue = \"b[0].x > 2\"\n"
+                    "do = [{ mark = \"m\" }]\n[[force]]\nof = \"b[*]\"\ncomponents = [\"1\", \"0\"]\n"),
+              ElementsAre(StartsWith("a.toml:6:17: 'at' says where each copy is")));
+}
+
 }  // namespace
 }  // namespace obscura::scene

@@ -357,5 +357,31 @@ TEST(Joining, WhatAJointHeldTouchesWhenItIsGone) {
   }
 }
 
+// Two balls that stick to a slab in the same instant, at either end: it turns about its middle, which stays.
+TEST(Joining, TwoThatComeToTouchInOneInstantBothStick) {
+  for (const Manner& manner : kManners) {
+    for (const int rate : {300, 600, 1000, 1200}) {
+      for (const double away : {0.0, 1e-4, 1e-7}) {
+        const std::string text =
+            empty_room(manner, 2) + "[[box]]\nname = \"m\"\nsize = [0.4, 2]\nmass = 2\nposition = [0, 0]\n" +
+            disc("p", 1, 0.1, fmt::format("position = [{}, 0.9]\nvelocity = [2, 0]", -1.3 - away)) +
+            disc("q", 1, 0.1, fmt::format("position = [{}, -0.9]\nvelocity = [-2, 0]", 1.3 + away)) +
+            "[[when]]\ntouches = [\"m\", \"p\"]\ndo = [{ stick = true }]\n"
+            "[[when]]\ntouches = [\"m\", \"q\"]\ndo = [{ stick = true }]\n";
+        const TextRun run(text, {fmt::format("physics.rate={}", rate)});
+        // L = 2 m v 0.9 over all moments about the middle
+        const double I = 2 * (0.16 + 4) / 12 + 2 * (0.5 * 0.01 + 0.81 + 0.09), spin = -2 * 2 * 0.9 / I;
+        const sim::Snapshot now = run.at(1);
+        for (const sim::Snapshot::Body& body : now.bodies)
+          if (body.position.norm() < 0.5) {
+            EXPECT_NEAR(body.spin.z(), spin, 1e-6) << manner.name << rate << " " << away;
+            EXPECT_LT(body.velocity.norm(), 1e-6) << manner.name << rate << " " << away;
+          }
+        EXPECT_EQ(run.run->events().size(), 2u) << manner.name << rate << " " << away;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

@@ -297,6 +297,7 @@ int render(RenderFlags flags) {
        (out.form == Output::Form::movie && !out.path.ends_with(".webm") && !out.path.ends_with(".mov"))))
     throw UsageError("--transparent is for .webm (VP9), .mov (ProRes 4444) and PNG: others have no alpha");
   if (flags.draft) make_quick(flags, out, scene);
+  scene.film.titles.still = out.form == Output::Form::still;
   if (flags.poster && out.form != Output::Form::movie)
     throw UsageError("--poster is a still beside a movie; --at makes one alone");
   if (flags.poster) {

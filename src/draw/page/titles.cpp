@@ -89,7 +89,7 @@ void draw_captions(const Titles& titles, const Rect& page, double weight, double
   for (const Caption& caption : titles.captions) {
     if (!caption.shown.has(time, film)) continue;
     Color color = ink;
-    color.a = std::uint8_t(std::lround(color.a * opacity(caption, film)));
+    if (!titles.still) color.a = std::uint8_t(std::lround(color.a * opacity(caption, film)));
     centered(caption.lines, Face::medium, size, page.width / 2, baseline, color, list);
   }
 }

@@ -33,6 +33,7 @@ struct Titles {
   bool badge = false;  // how fast it goes, where that is not as it happens
   double fade = 0;     // s: from the page's colour at the film's start, and to it at its end
   double length = 0;   // s of the film
+  bool still = false;  // of one picture: what is shown is there as a whole
   double foot = 0;     // of a page: what the captions take of its height, page units
   double type_scale = 1;
 

@@ -17,7 +17,8 @@ std::variant<Program, ExpressionFault> condition_formula(
     std::string_view text, std::span<const std::string> quantities, std::span<const Symbol> refused,
     std::span<const std::pair<std::string, double>> constants);
 
-/// The formulas of several values, one output each; the same slots. A fault is of the text of that number.
+/// The formulas of several values, one output each, times `unit`; the same slots. A fault is of the text of
+/// that number.
 std::variant<Program, std::pair<int, ExpressionFault>> value_formulas(
     std::span<const std::string> texts, double unit, std::span<const std::string> quantities,
     std::span<const Symbol> refused, std::span<const std::pair<std::string, double>> constants);

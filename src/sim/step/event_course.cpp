@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kSmooth = 0.2;      // of its speeds: how far they differ in a smooth step
 constexpr double kLettingGo = 1e-5;  // of a step
-constexpr double kTouchTime = 1e-7;  // likewise
 
 }  // namespace
 

@@ -59,6 +59,7 @@ class Events {
     double begun, ended;
   };
 
+  static constexpr double kTouchTime = 1e-7;    // likewise: so well the touch of two that are joined is known
   static constexpr double kSameInstant = 1e-9;  // of a step: what is as near happens together
   static constexpr double kMoment = 1e-9;       // of a step: what is known only a moment later
   static constexpr int kNarrowings = 60;        // of a bracket, by halves
@@ -115,6 +116,9 @@ class Events {
     int which;
   };
   void change(State<D>& state, const std::vector<Due>& actions, TimeStamp at);
+  void join_with_these(State<D>& state, TimeStamp at, std::vector<Due>& actions);
+  bool joined(const State<D>& state, const When<D>& when, int pair) const;
+  bool meets(const State<D>& state, std::pair<int, int> pair) const;
   void kick(State<D>& state, const State<D>& was, const Change<D>& by, double t);
   void known_broken(State<D>& state, int joint, bool broken);
   void jerk(State<D>& state, double fraction, double t);

@@ -17,7 +17,11 @@ namespace {
 
 constexpr int kFiner = 3;  // steps for one, where there are joints of rows, but few
 constexpr int kFewJoints = 8;
-constexpr double kNever = 2;        // a part of the interval
+constexpr double kOver = 1e-6;      // of the scale: how far features that bear may be apart
+constexpr double kFeature = 1e-13;  // of an interval
+constexpr double kPast =
+    4e-6;                     // of the larger body: so far behind an edge a corner is past it, see collide()
+constexpr double kNever = 2;  // a part of the interval
 constexpr double kAtOnce = 1e-9;    // a part too short to go
 constexpr double kFine = 0.25;      // of the thinner body: how far two may move between two looks
 constexpr int kMostLooks = 200000;  // of a couple in an interval
@@ -377,7 +381,57 @@ double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& whic
   }
   passes = false;
   if (const double part = passing_time(state, h); part < first) first = part, passes = true, which = {-1, -1};
+  if (const double part = feature_time(state, h); part < first) first = part, passes = true, which = {-1, -1};
   if (first < stopped) stops = nullptr;
+  return first;
+}
+
+// whether a candidate is a corner at a face, or in space two edges that cross
+template <int D>
+bool at_face(const ContactCandidate<D>& candidate) {
+  using Kind = typename ContactCandidate<D>::Kind;
+  return candidate.kind == Kind::corner_of_a || candidate.kind == Kind::corner_of_b ||
+         candidate.kind == Kind::edges;
+}
+
+// Under `event` the part of the way after which a corner that bears has left its face, as of what slides over
+// an edge: its features are others from there on.
+template <int D>
+double ExactSolver<D>::feature_time(const State<D>& state, double h) {
+  double first = kNever;
+  if (model_.collision != Collision::event) return first;
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind != Constraint::Kind::contact || !active(constraint)) continue;
+    const ContactCandidate<D>& candidate = candidates_[constraint.of];
+    const Couple couple{candidate.key.a, candidate.key.b};
+    if (couple.b < 0 || candidate.of_poses || !at_face(candidate)) continue;
+    const auto there = [&](double part) {
+      for (const int body : {couple.a, couple.b})
+        if (shifts(body)) poses_[body] = pose_at(state, body, h, part);
+      bool any = false;
+      near_contacts(poses_, couple, kOver * model_.scale,
+                    [&](const ContactCandidate<D>& gap) { any = any || gap.key == candidate.key; });
+      return any;
+    };
+    double slip = 0;
+    for (int i = 1; i < constraint.rows; ++i) {
+      const double v = interval_.velocities[constraint.first + i];
+      slip += v * v;
+    }
+    slip = std::sqrt(slip);
+    const double size = std::max(limits_.bounding_radius[couple.a], limits_.bounding_radius[couple.b]);
+    if (slip * h > kPast * size && !there(1) && there(0)) {
+      double low = 0, high = 1;
+      while (high - low > kFeature) {
+        const double middle = 0.5 * (low + high);
+        (there(middle) ? low : high) = middle;
+      }
+      const double past = high + kPast * size / (slip * h);
+      if (past < 1) first = std::min(first, past);
+    }
+    for (const int body : {couple.a, couple.b})
+      if (shifts(body)) poses_[body] = end_pose(state, body);
+  }
   return first;
 }
 

@@ -348,6 +348,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   template <class Found>
   void near_contacts(const std::vector<BodyMotion<D>>& at, Couple couple, double margin, Found&& found);
   BodyMotion<D> pose_at(const State<D>& state, int body, double h, double part);
+  double feature_time(const State<D>& state, double h);
   double force_couple(Couple couple);
 
   // releases.cpp
