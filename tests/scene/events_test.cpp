@@ -964,5 +964,31 @@ TEST(Events, OverAnEdgeComeInTheirTime) {
   }
 }
 
+// A table that swings faster than things fall is left where its acceleration is -g, told in that step.
+TEST(Events, AShakenTableIsLeftWhereItFallsFasterThanG) {
+  const double A = 0.1, w = 12;  // A w^2 = 14.4
+  const double leaves = std::asin(9.81 / (A * w * w)) / w;
+  for (const Manner& manner : kManners) {
+    for (const bool space : {false, true}) {
+      for (const int rate : {300, 600}) {
+        const std::string z = space ? ", 0" : "", wide = space ? ", 2" : "", deep = space ? ", 0.2" : "";
+        const TextRun run(
+            (space ? space_without_walls(manner, "gravity = [0, -9.81, 0]") : plane_without_walls(manner)) +
+                "[[box]]\nname = \"table\"\nsize = [2, 0.2" + wide + "]\nposition = [0, -0.1" + z +
+                "]\nmotion = { y = \"0.1*sin(12*t)\" }\n[[box]]\nname = \"b\"\nsize = [0.2, 0.2" + deep +
+                "]\nposition = [0, 0.1" + z + "]\nvelocity = [0, 1.2" + z +
+                "]\nelasticity = 0\n[[when]]\nleaves = [\"b\", \"table\"]\ndo = [{ mark = \"off\" }]\n",
+            {fmt::format("physics.rate={}", rate)});
+        run.at(0.2);
+        const auto events = run.run->events();
+        ASSERT_GE(events.size(), 1u) << manner.name << space << rate;
+        const double late = sim::value(events[0].time) - leaves;
+        EXPECT_GT(late, -1e-9) << manner.name << space << rate;
+        EXPECT_LT(late, manner.name == "event" ? 1e-6 : 2.0 / rate) << manner.name << space << rate;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

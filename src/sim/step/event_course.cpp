@@ -139,13 +139,13 @@ void Events<D>::meet(const State<D>& state, std::pair<int, int> pair, bool touch
 }
 
 // Whether two that touched, and bear nothing at the end of a step, do so only because a step is straight
-// where their way is curved: by gravity and their way, a = J g + J' v < 0, the gap closes again within a
-// step, J v + a h < 0, and it is as small as that makes it, |a| h^2.
+// where their way is curved: by gravity, the motion of what is moved and their way, a = J a0 + J' v < 0, the
+// gap closes again within a step, J v + a h < 0, and it is as small as that makes it, |a| h^2.
 template <int D>
 bool Events<D>::returns(const State<D>& state, std::pair<int, int> pair) {
   const Model<D>& model = stepper_->model(state);
-  const double h = step_length(model.rate);
-  const auto [a, b] = pair;
+  const double h = step_length(model.rate), ends = time({begun_.step + 1, 0}, model.rate);
+  const int a = pair.first, b = pair.second;
   const BodyMotion<D> one = body_motion(state, a), other = b < 0 ? BodyMotion<D>() : body_motion(state, b);
   std::vector<ContactCandidate<D>> near;
   const double margin = std::sqrt(model.gravity.squaredNorm()) * h * h;
@@ -160,7 +160,16 @@ bool Events<D>::returns(const State<D>& state, std::pair<int, int> pair) {
     const EvaluatedContact<D> now = rows(gap, one, other, J);
     const double speed =
         J[0].along.dot(one.v - other.v) + J[0].angular_a.dot(one.w) - J[0].angular_b.dot(other.w);
-    const double a_n = falls * J[0].along.dot(model.gravity) + J[0].velocity_product;
+    double a_n = falls * J[0].along.dot(model.gravity) + J[0].velocity_product;
+    Drives<D>& drives = stepper_->drives_;
+    if (const int i = drives.number(a); i >= 0) {
+      const DrivenMotion<D> moved = drives.at(i, ends);
+      a_n += J[0].along.dot(moved.a) + J[0].angular_a.dot(moved.alpha);
+    }
+    if (const int i = drives.number(b); i >= 0) {
+      const DrivenMotion<D> moved = drives.at(i, ends);
+      a_n -= J[0].along.dot(moved.a) + J[0].angular_b.dot(moved.alpha);
+    }
     return a_n < 0 && speed + a_n * h < 0 && now.value <= -a_n * h * h;
   });
 }
