@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "scene/body_kinds.h"
 #include "scene/conditions.h"
 
 namespace obscura::scene {
@@ -15,22 +14,17 @@ namespace {
 // the names of bodies, joints and springs that are not in the model, as something is wrong with them
 template <int D>
 std::vector<std::string> missing(const WhenNames<D>& names) {
-  std::vector<std::string> found;
-  const auto look = [&](std::string_view kind, auto&& known) {
+  std::vector<std::string> found(names.roster.wrong.begin(), names.roster.wrong.end());
+  for (const char* kind : {"joint", "spring"}) {
     const Node* all = names.top.find(kind);
-    for (std::size_t k = 0; all && all->is_list() && k < all->list().size(); ++k) {
+    for (std::size_t k = 0; all && k < all->list().size(); ++k) {
       const Node* its = all->list()[k].find("name");
       const std::string name = its && its->is_text() ? its->text() : fmt::format("{}[{}]", kind, k);
-      if (!known(name)) found.push_back(name);
+      if (names.joints(name).empty() && names.joints(name + "[*]").empty() &&
+          names.springs_called(name).empty())
+        found.push_back(name);
     }
-  };
-  for (const char* kind : {"joint", "spring"})
-    look(kind, [&](const std::string& name) {
-      return !names.joints(name).empty() || !names.joints(name + "[*]").empty() ||
-             !names.springs_called(name).empty();
-    });
-  for (const BodyKind& kind : body_kinds())
-    look(kind.name, [&](const std::string& name) { return names.is_body(name); });
+  }
   return found;
 }
 

@@ -103,6 +103,7 @@ class Simulation {
   const std::optional<sim::Trouble>& trouble() const;
 
   std::size_t runs() const { return followed_.size(); }
+  /// The run of that number, where it stands.
   const sim::Run& run(std::size_t number) const;
   /// The step up to which a run may stand to show what is to be seen at t, trails and all.
   std::int64_t step_before(sim::Rational t, std::size_t run = 0) const;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sim/model/body_motion.h"
+#include "sim/collide/near_pair.h"
 #include "sim/solve/iterate/joint_solver.h"
 
 namespace obscura::sim {
@@ -62,11 +62,9 @@ void ContactStep<D>::find_apart(State<D>& state) {
     if (state.broken[i] != 1 || joint.touching || joint.later || a < 0 || b < 0 ||
         joint.kind == JointKind::pulley || joint.kind == JointKind::gear)
       continue;
-    near_.clear();
-    collide(a, model_.bodies[std::size_t(a)].shape, body_motion(state, a), b,
-            model_.bodies[std::size_t(b)].shape, body_motion(state, b), 0, near_);
+    const auto near = near_pair(model_, state, a, b, 0);
     const auto deep = [&](const ContactCandidate<D>& it) { return it.value < -kTouches * model_.scale; };
-    if (std::none_of(near_.begin(), near_.end(), deep)) state.broken[i] = kGoneApart;
+    if (std::none_of(near.begin(), near.end(), deep)) state.broken[i] = kGoneApart;
   }
 }
 

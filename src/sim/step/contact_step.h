@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "sim/collide/narrow_phase.h"
 #include "sim/energy/energy_guard.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/solve/exact/lone_bodies.h"
@@ -51,7 +50,6 @@ class ContactStep {
   EnergyGuard<D> energy_guard_;
   std::unique_ptr<LoneBodies<D>> lone_bodies_;  // beside a solver for many
   std::vector<std::pair<int, int>> touched_;
-  std::vector<ContactCandidate<D>> near_;
   std::vector<char> jointed_;  // one a body
 };
 

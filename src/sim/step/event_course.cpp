@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "sim/collide/near_pair.h"
 #include "sim/constraint/row.h"
 #include "sim/step/events.h"
 
@@ -15,6 +16,19 @@ namespace {
 
 constexpr double kSmooth = 0.2;      // of its speeds: how far they differ in a smooth step
 constexpr double kLettingGo = 1e-5;  // of a step
+
+// how fast the gap of a row opens, m/s
+template <int D>
+double opening(const Row<D>& J, const BodyMotion<D>& a, const BodyMotion<D>& b) {
+  return J.along.dot(a.v - b.v) + J.angular_a.dot(a.w) - J.angular_b.dot(b.w);
+}
+
+// how fast the rim of a body goes as it turns, m/s; of a wall not at all
+template <int D>
+double way_of_rim(const Model<D>& model, int body, const BodyMotion<D>& at) {
+  return body < 0 ? 0
+                  : bounding_radius(model.bodies[std::size_t(body)].shape) * std::sqrt(at.w.squaredNorm());
+}
 
 }  // namespace
 
@@ -147,19 +161,12 @@ bool Events<D>::returns(const State<D>& state, std::pair<int, int> pair) {
   const double h = step_length(model.rate), ends = time({begun_.step + 1, 0}, model.rate);
   const int a = pair.first, b = pair.second;
   const BodyMotion<D> one = body_motion(state, a), other = b < 0 ? BodyMotion<D>() : body_motion(state, b);
-  std::vector<ContactCandidate<D>> near;
-  const double margin = std::sqrt(model.gravity.squaredNorm()) * h * h;
-  const Body<D>& its = model.bodies[std::size_t(a)];
-  if (b < 0)
-    collide(a, its.shape, one, -1 - b, model.walls[std::size_t(-1 - b)], margin, near);
-  else
-    collide(a, its.shape, one, b, model.bodies[std::size_t(b)].shape, other, margin, near);
-  const double falls = (its.fixed ? 0 : 1) - (b < 0 || model.bodies[std::size_t(b)].fixed ? 0 : 1);
+  const auto near = near_pair(model, state, a, b, std::sqrt(model.gravity.squaredNorm()) * h * h);
+  const double falls =
+      (model.bodies[std::size_t(a)].fixed ? 0 : 1) - (b < 0 || model.bodies[std::size_t(b)].fixed ? 0 : 1);
   return std::any_of(near.begin(), near.end(), [&](const ContactCandidate<D>& gap) {
     Row<D> J[D];
     const EvaluatedContact<D> now = rows(gap, one, other, J);
-    const double speed =
-        J[0].along.dot(one.v - other.v) + J[0].angular_a.dot(one.w) - J[0].angular_b.dot(other.w);
     double a_n = falls * J[0].along.dot(model.gravity) + J[0].velocity_product;
     Drives<D>& drives = stepper_->drives_;
     if (const int i = drives.number(a); i >= 0) {
@@ -170,7 +177,7 @@ bool Events<D>::returns(const State<D>& state, std::pair<int, int> pair) {
       const DrivenMotion<D> moved = drives.at(i, ends);
       a_n -= J[0].along.dot(moved.a) + J[0].angular_b.dot(moved.alpha);
     }
-    return a_n < 0 && speed + a_n * h < 0 && now.value <= -a_n * h * h;
+    return a_n < 0 && opening(J[0], one, other) + a_n * h < 0 && now.value <= -a_n * h * h;
   });
 }
 
@@ -228,6 +235,55 @@ void Events<D>::search_touch(Found& found, double from, double to) {
   }
   found.at = high;
   course_ = known;
+}
+
+// What is to be joined and comes to touch a moment from now joins with what does now: it would bounce in the
+// jerk of that.
+template <int D>
+void Events<D>::join_with_these(State<D>& state, TimeStamp at, std::vector<Due>& actions) {
+  if (exact_ || std::none_of(actions.begin(), actions.end(),
+                             [](const Due& due) { return due.action->what == Action::Do::change; }))
+    return;
+  for (int w = 0; w < int(model_.whens.size()); ++w) {
+    const When<D>& when = model_.whens[std::size_t(w)];
+    for (int k = 0; joins(when) && k < int(when.pairs.size()); ++k) {
+      char& on = state.events.on[std::size_t(slot(w, k))];
+      if (on || joined(state, when, k) || !meets(state, when.pairs[std::size_t(k)])) continue;
+      on = 1;
+      if (!act(state, Found{at.fraction, w, k, true, 0}, at)) continue;
+      for (const Action& action : when.actions) actions.push_back({&action, k});
+    }
+  }
+}
+
+// whether a pair is held together by a joint that its touch makes
+template <int D>
+bool Events<D>::joined(const State<D>& state, const When<D>& when, int pair) const {
+  for (const Action& action : when.actions) {
+    if (action.what != Action::Do::change) continue;
+    for (std::size_t i = 0; i < action.of.size(); ++i) {
+      if (action.of[i] < 0 || (action.of_pair && int(i) != pair)) continue;
+      const Change<D>& made = model_.changes[std::size_t(action.of[i])];
+      if (made.of == Change<D>::Of::join && !state.broken[std::size_t(made.index)]) return true;
+    }
+  }
+  return false;
+}
+
+// whether two that are apart touch within a moment
+template <int D>
+bool Events<D>::meets(const State<D>& state, std::pair<int, int> pair) const {
+  const auto [a, b] = pair;
+  const BodyMotion<D> one = body_motion(state, a), other = b < 0 ? BodyMotion<D>() : body_motion(state, b);
+  const double moment = 4 * kTouchTime * step_length(model_.rate);
+  const double fast =
+      std::sqrt((one.v - other.v).squaredNorm()) + way_of_rim(model_, a, one) + way_of_rim(model_, b, other);
+  const auto near = near_pair(model_, state, a, b, moment * fast + kTouchingGap * model_.scale);
+  return std::any_of(near.begin(), near.end(), [&](const ContactCandidate<D>& gap) {
+    Row<D> J[D];
+    rows(gap, one, other, J);
+    return opening(J[0], one, other) < 0;
+  });
 }
 
 // how a body stands at a fraction of the step within the course at hand, on the piece that has `inside`

@@ -6,9 +6,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include "sim/collide/narrow_phase.h"
+#include "sim/collide/near_pair.h"
 #include "sim/constraint/joints/joint.h"
-#include "sim/constraint/row.h"
 #include "sim/energy/energy.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/step/archive.h"
@@ -21,7 +20,6 @@ namespace {
 constexpr double kAtStart = 1e-11;  // of a step: what is as near happens where the course begins
 constexpr int kMostCuts = 1000;     // of a step
 constexpr std::size_t kMostHappenings = 100'000;
-constexpr double kTouchingGap = 1e-9;  // of the room's height: what touches at the start
 
 // gives a body another value, forces that act on it too; with a mass moments of inertia in proportion
 template <int D>
@@ -223,20 +221,12 @@ void Events<D>::begin(State<D>& state) {
   course_.clear();
   note_truths(state, 0, 0);
   // what touches at the start has not come to touch
-  std::vector<ContactCandidate<D>> near;
   for (int w = 0; w < int(model_.whens.size()); ++w) {
     const When<D>& when = model_.whens[std::size_t(w)];
     for (int k = 0; k < int(when.pairs.size()); ++k) {
       const auto [a, b] = when.pairs[std::size_t(k)];
-      near.clear();
-      const double margin = kTouchingGap * model_.scale;
-      const Shape<D>& shape = model_.bodies[std::size_t(a)].shape;
-      if (b < 0)
-        collide(a, shape, body_motion(state, a), -1 - b, model_.walls[std::size_t(-1 - b)], margin, near);
-      else
-        collide(a, shape, body_motion(state, a), b, model_.bodies[std::size_t(b)].shape,
-                body_motion(state, b), margin, near);
-      state.events.on[std::size_t(slot(w, k))] = !near.empty();
+      state.events.on[std::size_t(slot(w, k))] =
+          !near_pair(model_, state, a, b, kTouchingGap * model_.scale).empty();
     }
   }
   // times that are the start
@@ -372,63 +362,6 @@ std::optional<Trouble> Events<D>::advance(State<D>& state, double to) {
     }
   }
   return {};
-}
-
-// What is to be joined and comes to touch a moment from now joins with what does now: it would bounce in the
-// jerk of that.
-template <int D>
-void Events<D>::join_with_these(State<D>& state, TimeStamp at, std::vector<Due>& actions) {
-  if (exact_ || std::none_of(actions.begin(), actions.end(),
-                             [](const Due& due) { return due.action->what == Action::Do::change; }))
-    return;
-  for (int w = 0; w < int(model_.whens.size()); ++w) {
-    const When<D>& when = model_.whens[std::size_t(w)];
-    for (int k = 0; joins(when) && k < int(when.pairs.size()); ++k) {
-      char& on = state.events.on[std::size_t(slot(w, k))];
-      if (on || joined(state, when, k) || !meets(state, when.pairs[std::size_t(k)])) continue;
-      on = 1;
-      if (!act(state, Found{at.fraction, w, k, true, 0}, at)) continue;
-      for (const Action& action : when.actions) actions.push_back({&action, k});
-    }
-  }
-}
-
-// whether a pair is held together by a joint that its touch makes
-template <int D>
-bool Events<D>::joined(const State<D>& state, const When<D>& when, int pair) const {
-  for (const Action& action : when.actions) {
-    if (action.what != Action::Do::change) continue;
-    for (std::size_t i = 0; i < action.of.size(); ++i) {
-      if (action.of[i] < 0 || (action.of_pair && int(i) != pair)) continue;
-      const Change<D>& made = model_.changes[std::size_t(action.of[i])];
-      if (made.of == Change<D>::Of::join && !state.broken[std::size_t(made.index)]) return true;
-    }
-  }
-  return false;
-}
-
-// whether two that are apart touch within a moment
-template <int D>
-bool Events<D>::meets(const State<D>& state, std::pair<int, int> pair) const {
-  const auto [a, b] = pair;
-  const BodyMotion<D> one = body_motion(state, a), other = b < 0 ? BodyMotion<D>() : body_motion(state, b);
-  const double moment = 4 * kTouchTime * step_length(model_.rate);
-  std::vector<ContactCandidate<D>> near;
-  const double fast =
-      std::sqrt((one.v - other.v).squaredNorm()) +
-      bounding_radius(model_.bodies[std::size_t(a)].shape) * std::sqrt(one.w.squaredNorm()) +
-      (b < 0 ? 0 : bounding_radius(model_.bodies[std::size_t(b)].shape) * std::sqrt(other.w.squaredNorm()));
-  const double margin = moment * fast + kTouchingGap * model_.scale;
-  const Shape<D>& shape = model_.bodies[std::size_t(a)].shape;
-  if (b < 0)
-    collide(a, shape, one, -1 - b, model_.walls[std::size_t(-1 - b)], margin, near);
-  else
-    collide(a, shape, one, b, model_.bodies[std::size_t(b)].shape, other, margin, near);
-  return std::any_of(near.begin(), near.end(), [&](const ContactCandidate<D>& gap) {
-    Row<D> J[D];
-    rows(gap, one, other, J);
-    return J[0].along.dot(one.v - other.v) + J[0].angular_a.dot(one.w) - J[0].angular_b.dot(other.w) < 0;
-  });
 }
 
 // in the order of their pairs

@@ -59,8 +59,9 @@ class Events {
     double begun, ended;
   };
 
-  static constexpr double kTouchTime = 1e-7;    // likewise: so well the touch of two that are joined is known
   static constexpr double kSameInstant = 1e-9;  // of a step: what is as near happens together
+  static constexpr double kTouchTime = 1e-7;  // of a step: so well the touch of two that are joined is known
+  static constexpr double kTouchingGap = 1e-9;  // of the room's height: what touches at the start
   static constexpr double kMoment = 1e-9;       // of a step: what is known only a moment later
   static constexpr int kNarrowings = 60;        // of a bracket, by halves
 
