@@ -8,6 +8,7 @@
 
 #include "sim/collide/near_pair.h"
 #include "sim/constraint/row.h"
+#include "sim/model/drives.h"
 #include "sim/step/events.h"
 
 namespace obscura::sim {
