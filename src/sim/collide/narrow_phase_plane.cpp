@@ -24,7 +24,8 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kAligned = 1e-6;     // of a face: corners of both that lie so close lie at one place
+constexpr double kAligned = 1e-6;     // of parallel faces: corners of both that lie so close lie at one place
+constexpr double kOblique = 1e-10;    // of other faces
 constexpr double kParallel = 1e-3;    // rad: faces that can trade their corners
 constexpr double kBeyondFace = 1e-9;  // of a face: this far beyond its end is still over it
 
@@ -112,7 +113,7 @@ void corner_at_face(const Couple& couple, const ReferenceFace& touching, double 
   const double length = (r1 - r0).norm(), along = (p - r0).dot(r1 - r0) / length;
   const bool over = along >= 0 && along <= length;
   if (touching.value > 0 && !over) {
-    corner_at_corner(couple, touching, kAligned * length, 0, margin, out);
+    corner_at_corner(couple, touching, kOblique * length, 0, margin, out);
   } else {
     keep(touching.other_at_base(couple, 0, touching.value), margin, out);
   }
@@ -134,14 +135,14 @@ void face_at_face(const Couple& couple, const ReferenceFace& touching, double ma
   const Vec<2> partner_t(partner_n[1], -partner_n[0]);  // from lo to hi, as t
 
   const double length = t.dot(r[1] - r[0]), partner_length = partner_t.dot(i[1] - i[0]);
-  const double small = std::min(length, partner_length), aligned = kAligned * small;
+  const bool parallel = std::abs(t.dot(partner_n)) < kParallel;
+  const double small = std::min(length, partner_length), aligned = (parallel ? kAligned : kOblique) * small;
   const double slack = kBeyondFace * small;
   const double other_core[2] = {n.dot(i[0] - r[0]), n.dot(i[1] - r[0])};
   const double base_core[2] = {partner_n.dot(r[0] - i[0]), partner_n.dot(r[1] - i[0])};
   const double place[2] = {t.dot(i[0] - r[0]), t.dot(i[1] - r[0])};
 
   // apart: is it a face that is nearest? Parallel ones in line with each other's ends pass by.
-  const bool parallel = std::abs(t.dot(partner_n)) < kParallel;
   if (touching.value > 0) {
     bool over = false;
     for (int end = 0; end < 2; ++end) {

@@ -28,7 +28,8 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kAligned = 1e-6;    // of a core: places that lie so close are one
+constexpr double kAligned = 1e-6;    // of a core: places on parallel faces that lie so close are one
+constexpr double kOblique = 1e-10;   // on others
 constexpr double kParallel = 1e-3;   // rad: faces that can trade their corners
 constexpr double kAlongside = 1e-4;  // rad: edges that lie beside each other
 constexpr double kSteep = 0.1;       // cosine: a partner that leans more is not under a corner
@@ -242,7 +243,7 @@ class Shared {
     const double size =
         std::min(base.bounding_radius(),
                  other.bounding_radius() > 0 ? other.bounding_radius() : base.bounding_radius());
-    aligned_ = kAligned * size;
+    aligned_ = (parallel_ ? kAligned : kOblique) * size;
 
     const bool other_first = touching.base_is_b || !parallel_;
     if (other_first) {
@@ -397,7 +398,7 @@ void nearest_features(const Couple& couple, const ReferenceFace* touching, doubl
   const double size = std::min(a.bounding_radius() > 0 ? a.bounding_radius() : b.bounding_radius(),
                                b.bounding_radius() > 0 ? b.bounding_radius() : a.bounding_radius());
   const double aligned = kAligned * size;
-  if (best.apart <= aligned && touching) {
+  if (best.apart <= kOblique * size && touching) {
     // at one place and sharp: the deepest corner at the touching face
     return keep(touching->other_at_base(couple, touching->by.corner, touching->by.value), margin, out);
   }

@@ -348,6 +348,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
   template <class Found>
   void near_contacts(const std::vector<BodyMotion<D>>& at, Couple couple, double margin, Found&& found);
   BodyMotion<D> pose_at(const State<D>& state, int body, double h, double part);
+  Vec<D> slid(const State<D>& state, Couple couple, const Vec<D>& place, double h, double from, double to);
+  double end_of_faces(const State<D>& state, Couple couple, double h, double low);
   double feature_time(const State<D>& state, double h);
   double force_couple(Couple couple);
 
