@@ -187,6 +187,43 @@ TEST(Joining, FromItsInstantOnBothMoveAsOne) {
   }
 }
 
+// A rod made as two rough balls come to touch strikes them alone: friction turns neither, what they had along
+// it is one, what they had across it stays.
+TEST(Joining, WhatATouchMakesStrikesAlone) {
+  for (const Manner& manner : kManners) {
+    for (const double s : {1.0, -1.0}) {
+      for (const bool space : {false, true}) {
+        const std::string z = space ? ", 0" : "", w = space ? "[0, 0, 90]" : "90";
+        const auto ball = [&](char name, double mass, double x, double y, double v) {
+          return fmt::format(
+              "[[ball]]\nname = \"{}\"\nradius = 0.4\nmass = {}\nposition = [{}, {}{}]\n"
+              "velocity = [{}, 0{}]\nspin = {}\nfriction = 0.3\nelasticity = 0.8\n",
+              name, mass, x, y, z, v, z, w);
+        };
+        for (const int rate : {60, 600}) {
+          const TextRun run((space ? space_without_walls(manner, "gravity = [0, 0, 0]")
+                                   : plane_without_walls(manner, "gravity = [0, 0]")) +
+                            fmt::format("rate = {}\n", rate) + ball('a', 2, -s, 0, s) +
+                            ball('b', 1, s, 0.5, -s) +
+                            "[[joint]]\nname = \"rod\"\ntype = \"rod\"\nbetween = [\"a\", \"b\"]\njoined = "
+                            "false\n[[when]]\ntouches = [\"a\", \"b\"]\ndo = [{ join = \"rod\" }]\n");
+          const sim::Snapshot now = run.at(1.5);
+          const double across = 2 * 0.5 / 0.8;  // m/s of b against a
+          for (const sim::Snapshot::Body& body : now.bodies)
+            EXPECT_NEAR(body.spin.z(), kPi / 2, 1e-9) << manner.name << space << rate;
+          EXPECT_NEAR((now.bodies[0].velocity - now.bodies[1].velocity).norm(), across, 2e-5)
+              << manner.name << space << rate;
+          EXPECT_NEAR((2 * now.bodies[0].velocity + now.bodies[1].velocity - sim::Vec3(s, 0, 0)).norm(), 0,
+                      1e-9);
+          EXPECT_NEAR((now.bodies[0].position - now.bodies[1].position).norm(), 0.8,
+                      manner.name == "iterative" ? 1e-5 : 1e-6)
+              << manner.name << rate;
+        }
+      }
+    }
+  }
+}
+
 // Off the middle of a ball in space, at every rate: momentum, and spin by the angular momentum.
 TEST(Joining, InSpaceABulletTurnsABallAsItShould) {
   for (const Manner& manner : kManners) {

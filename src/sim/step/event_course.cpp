@@ -186,6 +186,7 @@ template <int D>
 void Events<D>::find_touches(const State<D>& state, int w, double from, double to) {
   const When<D>& when = model_.whens[std::size_t(w)];
   for (int k = 0; k < int(when.pairs.size()); ++k) {
+    if (joins(when) && joined(begun_, when, k)) continue;
     bool touched = state.events.on[std::size_t(slot(w, k))] != 0;
     spans(state, when.pairs[std::size_t(k)], touched, from, to);
     const auto met = [&](double at) {
@@ -218,23 +219,34 @@ bool Events<D>::joins(const When<D>& when) const {
   return false;
 }
 
-// The instant at which two that will be joined come to touch, where it is known to the step alone: they are
-// not to bounce for the rest of it.
+// The instant at which two that will be joined come to touch: they are not to bounce first. Where the course
+// knows it, they are held apart by up to a gap that is taken for none, which is why it is looked for from
+// there back.
 template <int D>
 void Events<D>::search_touch(Found& found, double from, double to) {
   const std::pair<int, int> pair = model_.whens[std::size_t(found.when)].pairs[std::size_t(found.which)];
   const Course<D> known = course_;
-  double low = from, high = to;
-  while (high - low > kTouchTime) {
-    const double middle = 0.5 * (low + high);
+  bool fails = false;
+  const auto touch_until = [&](double part) {
     course_.clear();
     tried_ = begun_;
-    if (stepper_->go(tried_, from, middle)) break;
+    fails = stepper_->go(tried_, from, part).has_value();
     sort_meetings();
-    spans(tried_, pair, false, from, middle);
-    (spans_.empty() ? low : high) = middle;
+    if (!fails) spans(tried_, pair, false, from, part);
+    return !fails && !spans_.empty();
+  };
+  if (exact_) {
+    double before = kBefore;
+    while (found.at - before > from && touch_until(found.at - before)) before *= 4;
+    if (!fails) found.before = std::min(before, found.at - from);
+  } else {
+    double low = from, high = to;
+    while (high - low > kTouchTime && !fails) {
+      const double middle = 0.5 * (low + high);
+      (touch_until(middle) ? high : low) = middle;
+    }
+    found.at = high, found.before = high - low;
   }
-  found.at = high;
   course_ = known;
 }
 

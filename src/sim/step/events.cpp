@@ -295,10 +295,8 @@ std::optional<Trouble> Events<D>::advance(State<D>& state, double to) {
     find_times(begun_, from, end);
     std::erase_if(found_, [&](Found& each) { return !confirm(state, each, from, end); });
     for (Found& each : found_) {
-      if (exact_)
-        search(each, from, end);
-      else if (joins(model_.whens[std::size_t(each.when)]))
-        search_touch(each, from, end);
+      if (exact_) search(each, from, end);
+      if (joins(model_.whens[std::size_t(each.when)])) search_touch(each, from, end);
     }
     std::sort(found_.begin(), found_.end(), [](const Found& a, const Found& b) { return a.at < b.at; });
 
@@ -314,7 +312,9 @@ std::optional<Trouble> Events<D>::advance(State<D>& state, double to) {
                 });
       const TimeStamp stamp = at < 1 ? TimeStamp{begun_.step, at} : TimeStamp{begun_.step + 1, 0};
       std::vector<Due> actions;
+      double cut_at = at;
       for (std::size_t k = i; k < j; ++k) {
+        cut_at = std::max(from, std::min(cut_at, found_[k].at - found_[k].before));
         // two that bounce twice in a step come to touch once where they are joined
         if (k > i && found_[k].when == found_[k - 1].when && found_[k].which == found_[k - 1].which) continue;
         if (!act(state, found_[k], stamp)) continue;
@@ -324,20 +324,19 @@ std::optional<Trouble> Events<D>::advance(State<D>& state, double to) {
       }
       if (actions.empty()) continue;
       cut = true;
-      if (at < end) {
+      if (cut_at < end) {
         // back, and up to here
         EventLog log = std::move(state.events);
         state = begun_;
         state.events = std::move(log);
         course_.clear();
-        if (at - from > kAtStart) {
-          if (auto trouble = stepper_->go(state, from, at)) return trouble;
+        if (cut_at - from > kAtStart) {
+          if (auto trouble = stepper_->go(state, from, cut_at)) return trouble;
           sort_meetings();
           state.beyond = 0;
         }
       }
-      note_truths(state, from, at);
-      join_with_these(state, stamp, actions);
+      note_truths(state, from, cut_at);
       for (std::size_t k = i; k < j; ++k) {
         const On on = model_.whens[std::size_t(found_[k].when)].on;
         state.events.on[std::size_t(slot(found_[k].when, found_[k].which))] = on == On::crosses
@@ -345,8 +344,9 @@ std::optional<Trouble> Events<D>::advance(State<D>& state, double to) {
                                                                               : on == On::leaves ? 0
                                                                                                  : 1;
       }
+      join_with_these(state, stamp, actions);
       change(state, actions, stamp);
-      from = at;
+      from = cut_at;
     }
     if (cut) continue;
     note_truths(state, from, end);

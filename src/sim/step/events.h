@@ -49,6 +49,8 @@ class Events {
     char side = 0;       // of crosses: on which it is from then on
     // of values: since when the course has it false, from when and until when true
     double since = 0, seen = 0, until = 0;
+    double before =
+        0;  // so much earlier, of the step, it is acted upon: two that are joined do not bounce first
   };
   struct Tried {
     bool is = false;
@@ -61,6 +63,7 @@ class Events {
 
   static constexpr double kSameInstant = 1e-9;  // of a step: what is as near happens together
   static constexpr double kTouchTime = 1e-7;  // of a step: so well the touch of two that are joined is known
+  static constexpr double kBefore = 1e-10;    // of a step: at least so much before they bounce two are joined
   static constexpr double kTouchingGap = 1e-9;  // of the room's height: what touches at the start
   static constexpr double kMoment = 1e-9;       // of a step: what is known only a moment later
   static constexpr int kNarrowings = 60;        // of a bracket, by halves
