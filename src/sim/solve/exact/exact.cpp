@@ -32,6 +32,10 @@ constexpr double kManyLooks = 3e5;   // at couples, before a step is
 constexpr int kMostRounds = 8;       // of stepping again what got farther than expected
 // of a step, by a body that meets walls alone: a bounce takes microseconds
 constexpr int kMostLoneCuts = 50000;
+// by one of a few, to which each is cheap: rest grows with them, so that what bounces ever faster comes to an
+// end
+constexpr std::size_t kSmallGroup = 4;
+constexpr int kMostCutsOfSmall = 100;
 
 }  // namespace
 
@@ -248,7 +252,11 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   progress_.rough = progress_.limited = false, progress_.work = 0, progress_.searches = 0;
   progress_.openings = limits_.most_openings, progress_.released.reset(), progress_.unclear.clear();
   const bool event_mode = model_.collision == Collision::event;
-  const int most_cuts = event_mode ? limits_.most_cuts : active_.lone ? kMostLoneCuts : limits_.most_cuts;
+  const bool small = active_.subset.bodies.size() <= kSmallGroup;
+  const int most_cuts = event_mode     ? limits_.most_cuts
+                        : active_.lone ? kMostLoneCuts
+                        : small        ? kMostCutsOfSmall
+                                       : limits_.most_cuts;
   const double slowest = progress_.rest_speed,
                fastest =
                    std::max(progress_.rest_speed, limits_.unit_speed * limits_.unit_speed / model_.scale * h);
