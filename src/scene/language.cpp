@@ -704,7 +704,7 @@ std::vector<Key> rows() {
       {.path = "mark.length.start", .form = cue, .unit = "s", .absent = "the start", .range = {0, 1e6}, .doc = "From when it is shown: a time of the run, a mark of [[when]], or { time, after }, `after` being seconds of the film.", .example = "1.5"},
       {.path = "mark.length.end", .form = cue, .unit = "s", .absent = "never", .range = {0, 1e6}, .doc = "From when it is no longer shown.", .example = "{ time = 2, after = 1 }"},
       {.path = "mark.length.panel", .form = text, .fallback = "\"\"", .absent = "all", .doc = "The panel of a figure that shows it, by its letter, or several.", .example = "\"a\""},
-      {.path = "mark.cone", .form = tables, .dimension = 2, .doc = "The friction cone at a contact of a body: forces inside it hold the body."},
+      {.path = "mark.cone", .form = tables, .doc = "The friction cone at a contact of a body: forces inside it hold the body."},
       {.path = "mark.cone.of", .form = thing, .required = true, .doc = "The body.", .example = "\"block\""},
       {.path = "mark.cone.label", .form = text, .fallback = "\"arctan \\\\mu\"", .doc = "Its label, as mathematics, at half the opening angle; `{}` is this half angle in degrees.",
        .example = "\"{}\""},

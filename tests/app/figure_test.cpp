@@ -438,6 +438,38 @@ label = "half = {}"
   for (const char* words : {">x<", ">y<"}) EXPECT_THAT(svg, HasSubstr(words));  // the rulers
 }
 
+// In space the friction cone is round: its outline as it is seen, its rim, its angle, from every side.
+TEST_F(Figure, SpaceHasFrictionCones) {
+  const std::string text = R"(
+duration = 1
+[room]
+size = [6, 4, 4]
+walls = [{ point = [0, 2, 0], normal = [0.34202014332566873, 0.9396926207859084, 0] }]
+[physics]
+solver = "direct"
+[[box]]
+name = "block"
+size = [1, 0.6, 0.8]
+position = [-0.39739395, 2.46389594, 0]
+orientation = { axis = [0, 0, 1], angle = -20 }
+friction = 0.7
+[film]
+size = [320, 180]
+[figure]
+at = 0.5
+)";
+  for (const char* view : {"side", "slant", "top"}) {
+    const std::string seen = text + "[[camera]]\nview = \"" + view + "\"\n";
+    scene(seen);
+    ASSERT_EQ(obscura("figure scene.toml -o bare.svg").exit, 0);
+    scene(seen + "[[figure.cone]]\nof = \"block\"\nlabel = \"half = {:.2}\"\n");
+    ASSERT_EQ(obscura("figure scene.toml -o cone.svg").exit, 0) << view;
+    const std::string bare = contents(path("bare.svg")), cone = contents(path("cone.svg"));
+    EXPECT_THAT(cone, HasSubstr("34.99")) << view;  // degrees: arctan of 0.7
+    EXPECT_GT(cone.size(), bare.size() + 1000) << view;
+  }
+}
+
 TEST_F(Figure, SpaceHasAPanelForEachCameraAndInstant) {
   scene(R"(
 duration = 1

@@ -21,11 +21,11 @@ constexpr double kNormal = 9 * 72 / 25.4;  // a unit normal: 9 mm
 constexpr double kAngle = 13;              // radius of an arc
 constexpr double kOffHatching = 2.5;       // from it to the words of a film
 constexpr double kBracketHalf = 24;        // page units: half the width of what something hangs from
-constexpr double kMarginInPrint = 0.25;    // around words, of their height
-constexpr double kCovered = 60;            // the cost of words over a body
-constexpr double kOnOutline = 8;           // of each unit of a body's outline under words of a film
-constexpr double kOnTrail = 0.8;           // of each unit of a trail or path under words
-constexpr double kNameCovered = 6;         // as against the cost of other words over something
+constexpr double kMargin = 0.2, kMarginInPrint = 0.25;  // around words, of their height
+constexpr double kCovered = 60;                         // the cost of words over a body
+constexpr double kOnOutline = 8;    // of each unit of a body's outline under words of a film
+constexpr double kOnTrail = 0.8;    // of each unit of a trail or path under words
+constexpr double kNameCovered = 6;  // as against the cost of other words over something
 
 constexpr std::uint8_t kPlate = 150;  // how much of what lies under the words of a film is covered
 
@@ -41,7 +41,7 @@ Notes::Notes(const sim::SceneInfo& cast, const Palette& colours, const Projectio
       now_(now),
       how_(how),
       list_(list),
-      placing_(projection.window(), how.plan || how.survey ? 0.12 : kMarginInPrint),
+      placing_(projection.window(), how.plan || how.survey ? kMargin : kMarginInPrint),
       point_(how.lettering.point),
       arrow_(how.lettering.arrow),
       type_(kType * point_),
@@ -100,7 +100,7 @@ void Notes::avoid_springs() {
   for (const sim::Snapshot::Spring& spring : now_.springs) {
     if (spring.loose) continue;
     const Point a = view_.page(spring.a), b = view_.page(spring.b), u = (b - a).normalized();
-    for (const double side : {-3.0, 0.0, 3.0})
+    for (const double side : {-4.5, -1.5, 1.5, 4.5})
       placing_.avoid(a + side * point_ * Point(-u.y(), u.x()), b + side * point_ * Point(-u.y(), u.x()), 1);
   }
 }
