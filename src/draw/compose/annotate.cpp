@@ -20,9 +20,6 @@ namespace {
 
 constexpr double kBetweenArcs = 12;     // points
 constexpr double kFilmType = 24 / 8.5;  // page units a point at the weight 1, as of charts
-constexpr double kCone = 0.5;           // of the picture's shorter side: how long a friction cone is at most
-constexpr int kRound = 64;              // corners of its rim in space
-constexpr double kArcInSpace = 0.6;     // of its length there: the arc of its angle
 constexpr double kAxes = 0.36;          // of the picture's shorter side: axes in space
 constexpr double kAslant = 0.05;        // sine of an angle: nearer to each other two arrows are in line
 constexpr double kHaloInPrint = 1.6;    // points: from the middle of an arrow to the edge of its halo
@@ -346,97 +343,6 @@ void Notes::angle(int index, const Marks::Angle& angle) {
     places.back().cost += 12 * point_;
   }
   word(key, f, places, rim);
-}
-
-// Friction holds while the force lies within arctan mu of the normal.
-void Notes::cone(int index, const Marks::Cone& cone, const Scales& scales) {
-  for (std::size_t i = 0; i < now_.contacts.size();) {
-    const sim::Snapshot::Contact& first = now_.contacts[i];
-    Vec3 force = Vec3::Zero(), point = Vec3::Zero();
-    double pressed = 0;
-    for (; i < now_.contacts.size(); ++i) {
-      const sim::Snapshot::Contact& each = now_.contacts[i];
-      if (each.body != first.body || each.other != first.other || each.wall != first.wall) break;
-      const double weight = std::max(each.force.dot(each.normal), 0.0);
-      force += each.force, point += weight * each.point, pressed += weight;
-    }
-    if ((first.body != cone.body && first.other != cone.body) || !(pressed > 0)) continue;
-    point /= pressed;
-    hang(point, point);
-    // a little longer than the arrow of the force
-    const double mu = sim::friction(cast_, first), half = std::atan(mu);
-    const double arrow = scales.force * force.norm();
-    double long_side = arrow > 0 ? 1.2 * arrow : 15 * millimetre_ / view_.scale_at(point);
-    // and within the picture, where a film shows it
-    const Rect& window = view_.window();
-    if (film())
-      long_side = std::min(long_side, kCone * std::min(window.width, window.height) / view_.scale_at(point));
-    const Vec3 n = first.body == cone.body ? first.normal : Vec3(-first.normal);
-    const bool space = cast_.dimension == 3;
-    // the direction across the normal in which the angle is drawn: in space that which is seen the widest
-    Vec3 along(-n.y(), n.x(), 0);
-    std::vector<Vec3> rim;
-    if (space) {
-      const Vec3 u = n.unitOrthogonal(), w = n.cross(u);
-      double widest = 0;
-      for (int k = 0; k < kRound; ++k) {
-        const double turn = 2 * std::numbers::pi * k / kRound;
-        const Vec3 across = std::cos(turn) * u + std::sin(turn) * w;
-        rim.push_back(point + long_side * (std::cos(half) * n + std::sin(half) * across));
-        const double wide = view_.page(rim.back()).x() - view_.page(point).x();
-        if (k == 0 || wide < widest) widest = wide, along = across;
-      }
-    }
-    const auto edge = [&](double a) { return Vec3(std::cos(a) * n + std::sin(a) * along); };
-    const auto tip = [&](double a, double r) { return Vec3(point + r * edge(a)); };
-    std::vector<Vec3> sector{point}, arc;
-    const double radius = space ? kArcInSpace * long_side : long_side;
-    for (int k = -8; k <= 8 && rim.empty(); ++k) sector.push_back(tip(half * k / 8, long_side));
-    sector.insert(sector.end(), rim.begin(), rim.end());
-    for (int k = 0; k <= 8; ++k) arc.push_back(tip(half * k / 8, radius));
-    // grey, for the force within it has its own colour
-    Color tint = colours_.quiet;
-    const Color rim_ink = colours_.quiet;
-    tint.a = 40;
-    std::vector<Point> outline;
-    for (const Vec3& place : sector) outline.push_back(view_.page(place));
-    if (rim.empty()) {
-      by_nodes(sector);
-      list_.add(outline, tint);
-      for (const double side : {-1.0, 1.0})
-        stroke_through({point, tip(side * half, long_side)}, thin_, rim_ink, 2);
-    } else {
-      const std::vector<Point> hull = convex_hull(outline);
-      std::vector<Vec3> corners;
-      for (const Point& p : hull)
-        corners.push_back(
-            sector[std::size_t(std::find(outline.begin(), outline.end(), p) - outline.begin())]);
-      by_nodes(corners);
-      list_.add(hull, tint);
-      // the rim, and the two lines from the apex that touch it as it is seen
-      const std::size_t apex = std::size_t(std::find(hull.begin(), hull.end(), outline[0]) - hull.begin());
-      for (const std::size_t beside : {apex + 1, apex + hull.size() - 1})
-        if (apex < hull.size()) stroke_through({point, corners[beside % hull.size()]}, thin_, rim_ink, 2);
-      rim.push_back(rim[0]);
-      stroke_through(rim, thin_, rim_ink, 2);
-    }
-    dashes(point, tip(0, long_side));
-    stroke_through(arc, thin_, colours_.ink, 2);
-    const WordKey key{WordKey::cone, index, first.other >= 0 ? first.other : -1 - first.wall};
-    const Formula f = set(key, cone.label, half * 180 / std::numbers::pi, "°", colours_.ink);
-    // beyond the arc; in space beside the line that it ends at, for it lies within the cone
-    const Point beside = view_.page(space ? tip(half, radius) : tip(half / 2, radius));
-    const Point middle = view_.page(space ? tip(0, radius) : point);
-    std::vector<Placing::Candidate> places =
-        Placing::along(view_.page(point), view_.page(tip(half, long_side)), gap_, size(f), point_, film());
-    for (Placing::Candidate& each : places) each.cost += 4 * point_;
-    const Point out = (beside - middle).normalized();
-    for (const double off : {3.0, 2.0, 1.0}) {
-      const Point far = off * gap_ * out + Point(out.x() * f.width / 2, out.y() * (f.ascent + f.descent) / 2);
-      places.insert(places.begin(), {beside + far, off / 2 * point_, false});
-    }
-    word(key, f, places, beside);
-  }
 }
 
 // In space: from the origin, all of one length.
