@@ -224,6 +224,34 @@ TEST(Joining, WhatATouchMakesStrikesAlone) {
   }
 }
 
+// Whatever else waits for the touch of two that are joined by it is told of it, in the order of the file; and
+// they may be let go, come back and be joined again.
+TEST(Joining, OtherConditionsOfTheTouchAreTold) {
+  const std::string joins = "[[when]]\ntouches = [\"a\", \"b\"]\nagain = true\ndo = [{ stick = true }]\n";
+  const std::string marks = "[[when]]\ntouches = [\"a\", \"b\"]\nagain = true\ndo = [{ mark = \"met\" }]\n";
+  for (const Manner& manner : kManners) {
+    for (const bool first : {true, false}) {
+      const TextRun run(
+          plane_without_walls(manner, "gravity = [0, 0]") +
+          disc("a", 1, 0.3, "position = [-1.5, 0]\nvelocity = [1, 0]") +
+          disc("b", 1, 0.3, "position = [1.5, 0]\nvelocity = [-1, 0]") +
+          (first ? joins + marks : marks + joins) +
+          "[[when]]\ntime = 2\ndo = [{ release = \"a+b\" }]\n[[force]]\nof = \"b\"\ncomponents = "
+          "[\"if(t < 2, 0, if(t < 2.5, 4, if(t < 3.5, -4, 0)))\", \"0\"]\n");
+      for (const double t : {1.1999, 1.20001, 1.3, 3.7503}) run.at(t);  // frames change nothing
+      const sim::Snapshot now = run.at(5);
+      const auto all = sim::events_until(*run.run, sim::rational(5));
+      std::vector<int> order;
+      for (const sim::RunEvent& event : all) order.push_back(event.when);
+      EXPECT_EQ(order, (std::vector<int>{0, 1, 2, 0, 1})) << manner.name << first;
+      ASSERT_EQ(all.size(), 5u);
+      EXPECT_NEAR(sim::value(all[1].time), 1.2, manner.name == "event" ? 1e-9 : 1e-7) << manner.name;
+      EXPECT_NEAR(sim::value(all[4].time), 3.75, manner.name == "event" ? 1e-9 : 1e-4) << manner.name;
+      EXPECT_NEAR((now.bodies[0].position - now.bodies[1].position).norm(), 0.6, 1e-5) << manner.name;
+    }
+  }
+}
+
 // Off the middle of a ball in space, at every rate: momentum, and spin by the angular momentum.
 TEST(Joining, InSpaceABulletTurnsABallAsItShould) {
   for (const Manner& manner : kManners) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "draw/compose/notes.h"
-#include "draw/page/measure.h"
+#include "draw/page/touching.h"
 #include "draw/picture/convex.h"
 
 namespace obscura::draw {
@@ -25,18 +25,11 @@ constexpr double kArcInSpace = 0.6;     // of its length there: the radius of th
 }  // namespace
 
 void Notes::cone(int index, const Marks::Cone& cone, const Scales& scales) {
-  for (std::size_t i = 0; i < now_.contacts.size();) {
-    const sim::Snapshot::Contact& first = now_.contacts[i];
-    Vec3 force = Vec3::Zero(), point = Vec3::Zero();
-    double pressed = 0;
-    for (; i < now_.contacts.size(); ++i) {
-      const sim::Snapshot::Contact& each = now_.contacts[i];
-      if (each.body != first.body || each.other != first.other || each.wall != first.wall) break;
-      const double weight = std::max(each.force.dot(each.normal), 0.0);
-      force += each.force, point += weight * each.point, pressed += weight;
-    }
-    if ((first.body != cone.body && first.other != cone.body) || !(pressed > 0)) continue;
-    point /= pressed;
+  const auto push = [](const sim::Snapshot::Contact& each) -> const Vec3& { return each.force; };
+  each_touching(now_, push, 0, [&](const Touching& all) {
+    const sim::Snapshot::Contact& first = all.first;
+    if ((first.body != cone.body && first.other != cone.body) || !(all.pressed > 0)) return;
+    const Vec3 &force = all.sum, &point = all.point;
     hang(point, point);
     // a little longer than the arrow of the force
     const double mu = sim::friction(cast_, first), half = std::atan(mu);
@@ -112,7 +105,7 @@ void Notes::cone(int index, const Marks::Cone& cone, const Scales& scales) {
       places.insert(places.begin(), {beside + far, off / 2 * point_, false});
     }
     word(key, f, places, beside);
-  }
+  });
 }
 
 }  // namespace obscura::draw

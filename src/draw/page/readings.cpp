@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "draw/page/touching.h"
+
 namespace obscura::draw {
 namespace {
 
@@ -38,23 +40,19 @@ Vec3 given(const sim::Snapshot::Contact& contact, Quantity what) {
 std::vector<Reading> touches(const sim::Snapshot& now, int body, Quantity what) {
   std::vector<Reading> found;
   const bool forces = what != Quantity::impulse && what != Quantity::normal;
-  for (std::size_t i = 0; i < now.contacts.size();) {
-    const sim::Snapshot::Contact& first = now.contacts[i];
-    Vec3 sum = Vec3::Zero(), point = Vec3::Zero();
-    double weight = 0;
-    for (; i < now.contacts.size(); ++i) {
-      const sim::Snapshot::Contact& each = now.contacts[i];
-      if (each.body != first.body || each.other != first.other || each.wall != first.wall) break;
-      const Vec3& push = forces ? each.force : each.impulse;
-      const double w = std::max(push.dot(each.normal), what == Quantity::normal ? 1e-12 : 0.0);
-      sum += given(each, what), point += w * each.point, weight += w;
-    }
-    if ((first.body != body && first.other != body) || !(weight > 0)) continue;
+  const auto push = [&](const sim::Snapshot::Contact& each) -> const Vec3& {
+    return forces ? each.force : each.impulse;
+  };
+  each_touching(now, push, what == Quantity::normal ? 1e-12 : 0.0, [&](const Touching& all) {
+    const sim::Snapshot::Contact& first = all.first;
+    if ((first.body != body && first.other != body) || !(all.pressed > 0)) return;
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = all.begin; i < all.end; ++i) sum += given(now.contacts[i], what);
     const double side = first.body == body ? 1 : -1;
     const int part = first.body != body ? first.body : first.other >= 0 ? first.other : -1 - first.wall;
     found.push_back(
-        {point / weight, side * (what == Quantity::normal ? first.normal : sum), side * sum.norm(), part});
-  }
+        {all.point, side * (what == Quantity::normal ? first.normal : sum), side * sum.norm(), part});
+  });
   return found;
 }
 

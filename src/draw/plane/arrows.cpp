@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "draw/page/touching.h"
 #include "draw/plane/stage.h"
 
 namespace obscura::draw {
@@ -135,25 +136,15 @@ std::vector<Push> pushes(const sim::SceneInfo& cast, const Look& look, const sim
   std::vector<Push> found;
   const auto wanted = [&](int body) { return body < int(look.bodies.size()) && look.bodies[body].contact; };
   const sim::Vec3 up = cast.gravity.norm() > 0 ? sim::Vec3(-cast.gravity) : sim::Vec3::UnitY();
-  for (std::size_t i = 0; i < now.contacts.size();) {
-    // all that one gives to another, and where it acts: corners that press harder count for more
-    const sim::Snapshot::Contact& first = now.contacts[i];
-    sim::Vec3 force = sim::Vec3::Zero(), point = sim::Vec3::Zero();
-    double pressed = 0;
-    for (; i < now.contacts.size(); ++i) {
-      const sim::Snapshot::Contact& each = now.contacts[i];
-      if (each.body != first.body || each.other != first.other || each.wall != first.wall) break;
-      const double weight = std::max(each.force.dot(each.normal), 0.0);
-      force += each.force, point += weight * each.point, pressed += weight;
-    }
-    const bool on_body = wanted(first.body);
-    const bool on_other = first.other >= 0 && wanted(first.other);
-    if ((!on_body && !on_other) || !(pressed > 0)) continue;
-    point /= pressed;
+  const auto force = [](const sim::Snapshot::Contact& each) -> const sim::Vec3& { return each.force; };
+  each_touching(now, force, 0, [&](const Touching& all) {
+    const bool on_body = wanted(all.first.body);
+    const bool on_other = all.first.other >= 0 && wanted(all.first.other);
+    if ((!on_body && !on_other) || !(all.pressed > 0)) return;
     // the body of the two that is carried
-    if (!on_body || (on_other && force.dot(up) < 0)) force = -force;
-    found.push_back({point, force});
-  }
+    const bool turned = !on_body || (on_other && all.sum.dot(up) < 0);
+    found.push_back({all.point, turned ? sim::Vec3(-all.sum) : all.sum});
+  });
   return found;
 }
 

@@ -250,6 +250,31 @@ void Events<D>::search_touch(Found& found, double from, double to) {
   course_ = known;
 }
 
+// Two that are joined when they come to touch do so for their other conditions in the same instant: joined,
+// they touch no more.
+template <int D>
+void Events<D>::touch_with_these(const State<D>& state) {
+  const std::size_t many = exact_ ? 0 : found_.size();
+  for (std::size_t i = 0; i < many; ++i) {
+    const Found joined = found_[i];
+    if (!joins(model_.whens[std::size_t(joined.when)])) continue;
+    const auto pair = model_.whens[std::size_t(joined.when)].pairs[std::size_t(joined.which)];
+    for (int w = 0; w < int(model_.whens.size()); ++w) {
+      const When<D>& when = model_.whens[std::size_t(w)];
+      for (int k = 0; when.on == On::touches && k < int(when.pairs.size()); ++k) {
+        if (w == joined.when || when.pairs[std::size_t(k)] != pair ||
+            state.events.on[std::size_t(slot(w, k))])
+          continue;
+        const auto its = std::find_if(found_.begin(), found_.end(),
+                                      [&](const Found& it) { return it.when == w && it.which == k; });
+        Found& touch = its == found_.end() ? found_.emplace_back() : *its;
+        touch.at = joined.at, touch.when = w, touch.which = k, touch.exact = true,
+        touch.before = joined.before;
+      }
+    }
+  }
+}
+
 // What is to be joined and comes to touch a moment from now joins with what does now: it would bounce in the
 // jerk of that.
 template <int D>
@@ -426,6 +451,8 @@ void Events<D>::find_crossings(const State<D>& state, int w, double from, double
 
 template void Events<2>::find(const State<2>& state, double from, double to, bool only_joining);
 template bool Events<2>::joins(const When<2>& when) const;
+template void Events<2>::touch_with_these(const State<2>&);
+template void Events<3>::touch_with_these(const State<3>&);
 template void Events<2>::search_touch(typename Events<2>::Found& found, double from, double to);
 template void Events<3>::find(const State<3>& state, double from, double to, bool only_joining);
 template bool Events<3>::joins(const When<3>& when) const;

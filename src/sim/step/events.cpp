@@ -298,13 +298,14 @@ std::optional<Trouble> Events<D>::advance(State<D>& state, double to) {
       if (exact_) search(each, from, end);
       if (joins(model_.whens[std::size_t(each.when)])) search_touch(each, from, end);
     }
+    touch_with_these(state);
     std::sort(found_.begin(), found_.end(), [](const Found& a, const Found& b) { return a.at < b.at; });
 
     bool cut = false;
     for (std::size_t i = 0, j; i < found_.size() && !cut; i = j) {
       const double at = found_[i].at;
       const double together = exact_ ? kSameInstant : 2 * kTouchTime;
-      for (j = i; j < found_.size() && found_[j].at - at <= together; ++j) {
+      for (j = i; j < found_.size() && found_[j].at - found_[j].before - at <= together; ++j) {
       }
       std::sort(found_.begin() + std::ptrdiff_t(i), found_.begin() + std::ptrdiff_t(j),
                 [](const Found& a, const Found& b) {

@@ -120,6 +120,7 @@ class Events {
     int which;
   };
   void change(State<D>& state, const std::vector<Due>& actions, TimeStamp at);
+  void touch_with_these(const State<D>& state);
   void join_with_these(State<D>& state, TimeStamp at, std::vector<Due>& actions);
   bool joined(const State<D>& state, const When<D>& when, int pair) const;
   bool meets(const State<D>& state, std::pair<int, int> pair) const;

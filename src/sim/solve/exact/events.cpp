@@ -17,13 +17,6 @@ namespace {
 
 constexpr int kFiner = 3;  // steps for one, where there are joints of rows, but few
 constexpr int kFewJoints = 8;
-constexpr double kOver = 1e-6;      // of the scale: how far features that bear may be apart
-constexpr double kFeature = 1e-13;  // of an interval
-constexpr double kPast =
-    4e-10;  // of the larger body: so far behind an edge a corner is past it, see collide()
-constexpr double kLook = 1e-3;      // of the way: over so much of it what leaves a face is seen to slide,
-constexpr double kLastWay = 1e-5;   // or so far, of the smaller body
-constexpr double kNever = 2;        // a part of the interval
 constexpr double kAtOnce = 1e-9;    // a part too short to go
 constexpr double kFine = 0.25;      // of the thinner body: how far two may move between two looks
 constexpr int kMostLooks = 200000;  // of a couple in an interval
@@ -37,27 +30,6 @@ constexpr double kShorter = 1.0 / 8;        // of an interval that is too long b
 constexpr int kMostShorter = 9;             // times one after another, where numbers are not finite
 
 }  // namespace
-
-// every gap below the margin, if they are near at all
-template <int D>
-template <class Found>
-void ExactSolver<D>::near_contacts(const std::vector<BodyMotion<D>>& at, Couple couple, double margin,
-                                   Found&& found) {
-  const auto [a, b] = couple;
-  scratch_.candidates.clear();
-  if (b < 0) {
-    const Wall<D>& wall = model_.walls[-1 - b];
-    if ((at[a].x - wall.point).dot(wall.normal) > limits_.bounding_radius[a] + margin) return;
-    sim::collide(a, model_.bodies[a].shape, at[a], -1 - b, wall, margin, scratch_.candidates);
-  } else {
-    const double far = limits_.bounding_radius[a] + limits_.bounding_radius[b] + margin;
-    if ((at[a].x - at[b].x).squaredNorm() > far * far) return;
-    if (model_.bodies[a].bare || model_.bodies[b].bare) return;
-    sim::collide(a, model_.bodies[a].shape, at[a], b, model_.bodies[b].shape, at[b], margin,
-                 scratch_.candidates);
-  }
-  for (const ContactCandidate<D>& gap : scratch_.candidates) found(gap);
-}
 
 template <int D>
 void ExactSolver<D>::find_contacts(const State<D>& state, double margin) {
@@ -388,105 +360,6 @@ double ExactSolver<D>::first_event(const State<D>& state, double h, Couple& whic
   return first;
 }
 
-// whether a candidate is a corner at a face, or in space two edges that cross
-template <int D>
-bool at_face(const ContactCandidate<D>& candidate) {
-  using Kind = typename ContactCandidate<D>::Kind;
-  return candidate.kind == Kind::corner_of_a || candidate.kind == Kind::corner_of_b ||
-         candidate.kind == Kind::edges;
-}
-
-// how a's matter at a place of the room moves over b from one part of the way to another, in the room
-template <int D>
-Vec<D> ExactSolver<D>::slid(const State<D>& state, Couple couple, const Vec<D>& place, double h, double from,
-                            double to) {
-  const auto [a, b] = couple;
-  const auto pose = [&](int body, double part) {
-    return shifts(body) ? pose_at(state, body, h, part) : poses_[body];
-  };
-  const BodyMotion<D> a0 = pose(a, from), b0 = pose(b, from), a1 = pose(a, to), b1 = pose(b, to);
-  const Vec<D> with_a = a1.x + a1.arm(a0.room_from_body.transpose() * (place - a0.x));
-  const Vec<D> with_b = b1.x + b1.arm(b0.room_from_body.transpose() * (place - b0.x));
-  return with_a - with_b;
-}
-
-// Parallel faces that slide off each other are no pair from shortly before their end on, see kAligned of the
-// narrow phase. The part of the way at which they end, of a couple that is one until `low`, from the extent
-// that they share,
-//   part = low + d E(low) / (E(low - d) - E(low))
-template <int D>
-double ExactSolver<D>::end_of_faces(const State<D>& state, Couple couple, double h, double low) {
-  const auto gaps = [&](double part, auto&& found) {
-    for (const int body : {couple.a, couple.b})
-      if (shifts(body)) poses_[body] = pose_at(state, body, h, part);
-    near_contacts(poses_, couple, kOver * model_.scale, [&](const ContactCandidate<D>& gap) {
-      found(evaluate(gap, poses_[couple.a], poses_[couple.b]).point);
-    });
-  };
-  Vec<D> place = Vec<D>::Zero();
-  int many = 0;
-  gaps(low, [&](const Vec<D>& point) { place = point, ++many; });
-  if (many < 2) return low;
-  const double size = std::min(limits_.bounding_radius[couple.a], limits_.bounding_radius[couple.b]);
-  double part = std::min(low, kLook);
-  Vec<D> way = slid(state, couple, place, h, low, low - part);
-  if (const double far = way.norm(); far > kLastWay * size) part *= kLastWay * size / far;
-  if (!(part > 0)) return low;
-  way = slid(state, couple, place, h, low, low - part).normalized();
-  const auto extent = [&](double at) {
-    double least = 1e300, most = -1e300;
-    gaps(at, [&](const Vec<D>& point) {
-      least = std::min(least, point.dot(way)), most = std::max(most, point.dot(way));
-    });
-    return most - least;
-  };
-  const double left = extent(low), shrinks = extent(low - part) - left;
-  return shrinks > 0 && left < shrinks ? low + part * left / shrinks : low;
-}
-
-// Under `event` the part of the way after which a corner that bears has left its face, as of what slides over
-// an edge: its features are others from there on.
-template <int D>
-double ExactSolver<D>::feature_time(const State<D>& state, double h) {
-  double first = kNever;
-  if (model_.collision != Collision::event) return first;
-  for (const Constraint& constraint : constraints_) {
-    if (constraint.kind != Constraint::Kind::contact || !active(constraint)) continue;
-    const ContactCandidate<D>& candidate = candidates_[constraint.of];
-    const Couple couple{candidate.key.a, candidate.key.b};
-    if (couple.b < 0 || candidate.of_poses || !at_face(candidate)) continue;
-    bool alone = true;  // no other feature of the two is near
-    const auto there = [&](double part) {
-      for (const int body : {couple.a, couple.b})
-        if (shifts(body)) poses_[body] = pose_at(state, body, h, part);
-      bool any = false;
-      alone = true;
-      near_contacts(poses_, couple, kOver * model_.scale, [&](const ContactCandidate<D>& gap) {
-        any = any || gap.key == candidate.key;
-        alone = false;
-      });
-      return any;
-    };
-    const double size = std::max(limits_.bounding_radius[couple.a], limits_.bounding_radius[couple.b]);
-    const Vec<D> place = evaluate(candidate, poses_[couple.a], poses_[couple.b]).point;
-    const double slides = slid(state, couple, place, h, 1, 0).norm();
-    if (slides > kPast * size && !there(1) && there(0)) {
-      double low = 0, high = 1;
-      while (high - low > kFeature) {
-        const double middle = 0.5 * (low + high);
-        (there(middle) ? low : high) = middle;
-      }
-      there(high);
-      if (alone) high = std::max(high, end_of_faces(state, couple, h, low));
-      const double past = high + kPast * size / slides;
-      if (past < 1) first = std::min(first, past);
-    }
-    for (const int body : {couple.a, couple.b})
-      if (shifts(body)) poses_[body] = end_pose(state, body);
-  }
-  return first;
-}
-
 // the turn between the sides of a joint a part of the way
 template <int D>
 JointTurn<D> ExactSolver<D>::turn_between_at(const State<D>& state, const Joint<D>& joint, double h,
@@ -649,6 +522,8 @@ template void ExactSolver<2>::find_contacts(const State<2>&, double);
 template double ExactSolver<3>::advance_to_event(State<3>&, double, double, bool&);
 template void ExactSolver<3>::find_contacts(const State<3>&, double);
 template double ExactSolver<2>::gap_of(const ContactKey&, double);
+template BodyMotion<2> ExactSolver<2>::pose_at(const State<2>&, int, double, double);
+template BodyMotion<3> ExactSolver<3>::pose_at(const State<3>&, int, double, double);
 template double ExactSolver<3>::gap_of(const ContactKey&, double);
 
 }  // namespace obscura::sim

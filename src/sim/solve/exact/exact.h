@@ -325,6 +325,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void find_accelerations(State<D>& state, double t);
 
   // events.cpp
+  static constexpr double kNever = 2;  // a part of the interval
   double advance_to_event(State<D>& state, double t, double h, bool& cut);
   void integrate(State<D>& state, double t, double h);
   void build_rows(const State<D>& state, double t);
@@ -348,10 +349,12 @@ class ExactSolver final : public ContactSolver<D>, private System {
   template <class Found>
   void near_contacts(const std::vector<BodyMotion<D>>& at, Couple couple, double margin, Found&& found);
   BodyMotion<D> pose_at(const State<D>& state, int body, double h, double part);
+  double force_couple(Couple couple);
+
+  // face_ends.cpp
+  double feature_time(const State<D>& state, double h);
   Vec<D> slid(const State<D>& state, Couple couple, const Vec<D>& place, double h, double from, double to);
   double end_of_faces(const State<D>& state, Couple couple, double h, double low);
-  double feature_time(const State<D>& state, double h);
-  double force_couple(Couple couple);
 
   // releases.cpp
   double force_reserve(const Constraint& constraint, const Eigen::VectorXd& f) const;
@@ -429,5 +432,26 @@ class ExactSolver final : public ContactSolver<D>, private System {
   Islands roots_;
   std::vector<int> island_of_;  // one a body
 };
+
+// every gap below the margin, if they are near at all
+template <int D>
+template <class Found>
+void ExactSolver<D>::near_contacts(const std::vector<BodyMotion<D>>& at, Couple couple, double margin,
+                                   Found&& found) {
+  const auto [a, b] = couple;
+  scratch_.candidates.clear();
+  if (b < 0) {
+    const Wall<D>& wall = model_.walls[-1 - b];
+    if ((at[a].x - wall.point).dot(wall.normal) > limits_.bounding_radius[a] + margin) return;
+    sim::collide(a, model_.bodies[a].shape, at[a], -1 - b, wall, margin, scratch_.candidates);
+  } else {
+    const double far = limits_.bounding_radius[a] + limits_.bounding_radius[b] + margin;
+    if ((at[a].x - at[b].x).squaredNorm() > far * far) return;
+    if (model_.bodies[a].bare || model_.bodies[b].bare) return;
+    sim::collide(a, model_.bodies[a].shape, at[a], b, model_.bodies[b].shape, at[b], margin,
+                 scratch_.candidates);
+  }
+  for (const ContactCandidate<D>& gap : scratch_.candidates) found(gap);
+}
 
 }  // namespace obscura::sim
