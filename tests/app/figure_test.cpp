@@ -465,8 +465,11 @@ at = 0.5
     scene(seen + "[[figure.cone]]\nof = \"block\"\nlabel = \"half = {:.2}\"\n");
     ASSERT_EQ(obscura("figure scene.toml -o cone.svg").exit, 0) << view;
     const std::string bare = contents(path("bare.svg")), cone = contents(path("cone.svg"));
-    EXPECT_THAT(cone, HasSubstr("34.99")) << view;  // degrees: arctan of 0.7
-    EXPECT_GT(cone.size(), bare.size() + 1000) << view;
+    EXPECT_THAT(cone, HasSubstr("34.99")) << view;                               // degrees: arctan of 0.7
+    for (const char* fill : {"fill-opacity=\"0.157\"", "stroke=\"#666f78\""}) {  // the hull, the rim
+      EXPECT_THAT(cone, HasSubstr(fill)) << view;
+      EXPECT_EQ(bare.find(fill), std::string::npos) << view;
+    }
   }
 }
 

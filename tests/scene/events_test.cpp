@@ -926,9 +926,8 @@ TEST(Events, OfBondsAreRefusedWhereTimesAreExact) {
             "");
 }
 
-// Under `event` what slides over the edge of a table leaves it when its last corner does, but for some
-// millionths of its face, whatever the rate; and one that tips about the edge does so from where its middle
-// is over it.
+// Under `event` what slides over the edge of a table leaves it when its last corner does, whatever the rate;
+// and one that tips about the edge does so from where its middle is over it.
 TEST(Events, OverAnEdgeComeInTheirTime) {
   for (const bool space : {false, true}) {
     for (const bool turns : {false, true}) {
