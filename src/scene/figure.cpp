@@ -166,10 +166,44 @@ const Node::List& tables(const Fields& fields, const char* key) {
   return node ? node->list() : none;
 }
 
+// What a vector's `with` names, as readings have it (draw::Reading::part): what is touched, springs, or
+// joints.
+template <int D>
+std::vector<int> its_others(const Node& with, draw::Quantity quantity, const WhenNames<D>& names,
+                            Diagnostics& complaints) {
+  const std::string& text = with.text();
+  std::vector<int> found;
+  switch (quantity) {
+    case draw::Quantity::contact:
+    case draw::Quantity::normal_force:
+    case draw::Quantity::friction:
+    case draw::Quantity::impulse:
+    case draw::Quantity::normal:
+      return names.side(with);
+    case draw::Quantity::spring:
+    case draw::Quantity::spring_force:
+      found = names.springs_called(text);
+      if (found.empty())
+        complaints.add(with.place, fmt::format("no spring is called {}", scene::quoted(text)));
+      return found;
+    case draw::Quantity::joint_force:
+    case draw::Quantity::joint_torque:
+      found = names.joints(text);
+      if (found.empty()) complaints.add(with.place, names.unknown_joint(text));
+      return found;
+    default:
+      complaints.add(
+          with.place,
+          "'with' is of forces that have one arrow for each thing: contact, normal_force, friction, "
+          "impulse, normal, spring_force, spring, joint_force, joint_torque");
+      return {};
+  }
+}
+
 // The marks of [figure] or [film].
 template <int D>
 draw::Marks read_marks(const Fields& fields, const std::string& owner, const Reader<D>& read,
-                       Diagnostics& complaints) {
+                       const WhenNames<D>& names, Diagnostics& complaints) {
   draw::Marks marks;
   const bool film = owner == "film";
   marks.axes = fields.flag("axes");
@@ -188,6 +222,7 @@ draw::Marks read_marks(const Fields& fields, const std::string& owner, const Rea
     if (position ? !vector.to && vector.body < 0 : vector.body < 0)
       complaints.add(node.place, position ? "a position needs 'to', a place, or 'of', a body"
                                           : "this vector needs 'of', the body that has it");
+    if (its.given("with")) vector.with = its_others(*its.given("with"), vector.quantity, names, complaints);
     marks.vectors.push_back(vector);
   }
   for (const Node& node : tables(fields, "angle")) {
@@ -318,13 +353,14 @@ draw::Figure::Plot plot_of(const Node& top, const Node& node, const Reader<D>& r
 }  // namespace
 
 template <int D>
-draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
+draw::Figure figure(const WhenNames<D>& names, const Seating<D>& roster, const sim::World<D>& world,
                     Diagnostics& complaints) {
   draw::Figure figure;
+  const Node& top = names.top;
   const Fields fields = Fields::of(top, "figure");
   const Reader<D> read(roster, world, complaints);
   read_frame(fields, read, complaints, figure);
-  static_cast<draw::Marks&>(figure) = read_marks<D>(fields, "figure", read, complaints);
+  static_cast<draw::Marks&>(figure) = read_marks<D>(fields, "figure", read, names, complaints);
   for (const Node& node : tables(fields, "plot"))
     figure.plots.push_back(plot_of(top, node, read, complaints));
   if (!figure.room && figure.plots.empty())
@@ -378,15 +414,18 @@ std::vector<draw::Chart> charts(const Node& top, const Seating<D>& roster, const
 }
 
 template <int D>
-draw::Marks film_marks(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
+draw::Marks film_marks(const WhenNames<D>& names, const Seating<D>& roster, const sim::World<D>& world,
                        const draw::Pace& speed, Diagnostics& complaints) {
+  const Node& top = names.top;
   const Fields fields = Fields::of(top, "film");
-  draw::Marks marks = read_marks<D>(fields, "film", Reader<D>(roster, world, complaints, speed), complaints);
+  draw::Marks marks =
+      read_marks<D>(fields, "film", Reader<D>(roster, world, complaints, speed), names, complaints);
   if (!fields.flag("figure")) return marks;
   // what the figure says comes first; it has been checked
   Diagnostics known("", {});
-  draw::Marks own =
-      read_marks<D>(Fields::of(top, "figure"), "figure", Reader<D>(roster, world, known, speed), known);
+  const WhenNames<D> silent{top, roster, names.springs, names.bonds, names.model, names.constants, known};
+  draw::Marks own = read_marks<D>(Fields::of(top, "figure"), "figure", Reader<D>(roster, world, known, speed),
+                                  silent, known);
   // a film has no panels
   const auto unbound = [](auto& all) {
     std::erase_if(all, [](const auto& mark) { return !mark.shown.panels.empty(); });
@@ -401,12 +440,12 @@ draw::Marks film_marks(const Node& top, const Seating<D>& roster, const sim::Wor
   return own;
 }
 
-template draw::Figure figure<2>(const Node&, const Seating<2>&, const sim::World<2>&, Diagnostics&);
-template draw::Figure figure<3>(const Node&, const Seating<3>&, const sim::World<3>&, Diagnostics&);
-template draw::Marks film_marks<2>(const Node&, const Seating<2>&, const sim::World<2>&, const draw::Pace&,
-                                   Diagnostics&);
-template draw::Marks film_marks<3>(const Node&, const Seating<3>&, const sim::World<3>&, const draw::Pace&,
-                                   Diagnostics&);
+template draw::Figure figure<2>(const WhenNames<2>&, const Seating<2>&, const sim::World<2>&, Diagnostics&);
+template draw::Figure figure<3>(const WhenNames<3>&, const Seating<3>&, const sim::World<3>&, Diagnostics&);
+template draw::Marks film_marks<2>(const WhenNames<2>&, const Seating<2>&, const sim::World<2>&,
+                                   const draw::Pace&, Diagnostics&);
+template draw::Marks film_marks<3>(const WhenNames<3>&, const Seating<3>&, const sim::World<3>&,
+                                   const draw::Pace&, Diagnostics&);
 template std::vector<draw::Caption> captions<2>(const Node&, const Seating<2>&, const sim::World<2>&,
                                                 const draw::Pace&, Diagnostics&);
 template std::vector<draw::Caption> captions<3>(const Node&, const Seating<3>&, const sim::World<3>&,

@@ -7,18 +7,20 @@
 #include "scene/complaints.h"
 #include "scene/document.h"
 #include "scene/roster.h"
+#include "scene/when_names.h"
 #include "sim/model/state.h"
 
 namespace obscura::scene {
 
-/// The scene's [figure]. Reports names that do not exist.
+/// The scene's [figure]. Reports names that do not exist. `names`: what those of walls, joints and springs
+/// mean.
 template <int D>
-draw::Figure figure(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
+draw::Figure figure(const WhenNames<D>& names, const Seating<D>& roster, const sim::World<D>& world,
                     Diagnostics& complaints);
 
 /// The marks of [film], and those of [figure] where `film.figure` asks for them; `speed`: of the film.
 template <int D>
-draw::Marks film_marks(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
+draw::Marks film_marks(const WhenNames<D>& names, const Seating<D>& roster, const sim::World<D>& world,
                        const draw::Pace& speed, Diagnostics& complaints);
 
 /// The scene's [[film.caption]]s.

@@ -679,6 +679,7 @@ std::vector<Key> rows() {
       {.path = "mark.vector.of", .form = thing, .absent = "none: a `position` between places", .doc = "The body it belongs to.", .example = "\"crate\""},
       {.path = "mark.vector.at", .form = place, .absent = "the body's centre; of a `position`, the origin; of a contact, where it is",
        .doc = "Where it begins; for a velocity, the point that has it.", .example = "{ body = \"crate\", at = \"top\" }"},
+      {.path = "mark.vector.with", .form = text, .absent = "all that it touches, all that holds it", .doc = "Of forces that have one arrow for each thing: the body or wall that is touched, the spring or the joint, whose arrow alone it is. Without it the arrows of a label are numbered, as in N_1 and N_2, where several are shown at once.", .example = "\"floor\""},
       {.path = "mark.vector.to", .form = place, .absent = "the body's centre", .doc = "Where a `position` ends.", .example = "[2, 1]"},
       {.path = "mark.vector.label", .form = text, .fallback = "\"\"", .doc = "Its label, as mathematics; its first letter is set as a vector, unless it begins with a word. `{}` is its value with its unit, `{:.2}` its value with two decimals.",
        .example = "\"v_center\""},

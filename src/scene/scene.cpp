@@ -296,8 +296,9 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   // the looks
   look(top, roster, scene.look, complaints);
   scene.cameras = cameras<D>(top, roster, complaints);
-  scene.figure = figure<D>(top, roster, world, complaints);
-  scene.film.marks = film_marks<D>(top, roster, world, scene.film.speed, complaints);
+  const WhenNames<D> names{top, roster, sprung, bonded, model, constants, complaints};
+  scene.figure = figure<D>(names, roster, world, complaints);
+  scene.film.marks = film_marks<D>(names, roster, world, scene.film.speed, complaints);
   scene.figure.names = scene.film.marks.names = draw::names_of(scene.look);
   scene.film.titles.captions = captions<D>(top, roster, world, scene.film.speed, complaints);
   scene.film.charts = charts<D>(top, roster, world, complaints);

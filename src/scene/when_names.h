@@ -12,7 +12,7 @@
 
 namespace obscura::scene {
 
-/// What the names in [[when]] mean.
+/// What names of bodies, walls, springs and joints mean, in [[when]] and in marks.
 template <int D>
 struct WhenNames {
   const Node& top;

@@ -15,6 +15,7 @@
 #include "draw/compose/annotations.h"
 #include "draw/page/measure.h"
 #include "draw/page/readings.h"
+#include "draw/picture/formula.h"
 #include "draw/plane/stage.h"
 #include "needs.h"
 #include "program.h"
@@ -649,6 +650,110 @@ end = 1
   EXPECT_THAT(run.err, HasSubstr("'text': expected {} or {:.2}, the number of decimals, got \"{:2.1f}\""));
   EXPECT_THAT(run.err, HasSubstr("a place of the room has no path: expected a body"));
   EXPECT_THAT(run.err, HasSubstr("'end' comes before 'start': it would never be shown"));
+}
+
+/// What the arrows of a label belong to is told by their numbers, in films and in figures, from the first
+/// frame on; one thing alone has its arrow without one.
+TEST(Marks, ArrowsOfOneLabelAreNumbered) {
+  const std::string text = R"(duration = 0.5
+[room]
+size = [4, 3]
+[physics]
+collision = "event"
+[[box]]
+name = "ladder"
+size = [0.1, 2.4]
+position = [0.6434, 1.0643]
+angle = 30
+friction = 0.9
+elasticity = 0
+mass = 5
+[[ball]]
+name = "bob"
+radius = 0.05
+mass = 0.5
+position = [0.6434, 0.5643]
+[[joint]]
+type = "rod"
+name = "cord"
+between = ["ladder", "bob"]
+[[spring]]
+name = "band"
+between = ["ladder", [0.6434, 2.9]]
+stiffness = 5
+rest_length = 1
+[film]
+figure = true
+[[figure.vector]]
+quantity = "normal_force"
+of = "ladder"
+label = "N = {:.1} N"
+[[film.vector]]
+quantity = "friction"
+of = "ladder"
+label = "f_r"
+[[film.vector]]
+quantity = "contact"
+of = "ladder"
+label = "both together"
+[[film.vector]]
+quantity = "contact"
+of = "ladder"
+with = "floor"
+label = "F"
+[[film.vector]]
+quantity = "spring_force"
+of = "ladder"
+with = "band"
+label = "S"
+[[film.vector]]
+quantity = "joint_force"
+of = "ladder"
+with = "cord"
+label = "T"
+[figure]
+at = [0.4]
+)";
+  Filmed film(scene::parse(text, "ladder.toml"));
+  ASSERT_EQ(film.scene.film.marks.vectors.size(), 6u);
+  const sim::Snapshot late = film.now(24);
+  std::string words;
+  for (const draw::Text& line : film.marks(late, 24).texts) words += said(line) + "|";
+  for (const char* each : {"N1 = ", "N2 = ", "fr1", "fr2", "both together", "F|", "S|", "T|"})
+    EXPECT_THAT(words, HasSubstr(each));
+  draw::Marks marks = film.scene.film.marks;
+  const std::vector<sim::Snapshot> moments{late};
+  draw::number_arrows(marks, film.artist.scene_info(), moments, std::vector<double>{0.4});
+  std::vector<std::size_t> numbers, arrows;
+  for (const draw::Marks::Vector& vector : marks.vectors) {
+    numbers.push_back(vector.numbered.size());
+    arrows.push_back(draw::readings(vector, film.artist.scene_info(), moments[0]).size());
+  }
+  EXPECT_EQ(numbers, (std::vector<std::size_t>{2, 2, 2, 0, 0, 0}));
+  EXPECT_EQ(arrows, (std::vector<std::size_t>{2, 2, 2, 1, 1, 1}));
+  EXPECT_EQ(draw::readings(marks.vectors[3], film.artist.scene_info(), moments[0])[0].part, -1);
+  // the same number for the same thing
+  EXPECT_EQ(marks.vectors[0].numbered, marks.vectors[1].numbered);
+
+  EXPECT_EQ(draw::with_number("N = {:.1} N", 2), "N_{2} = {:.1} N");
+  EXPECT_EQ(draw::with_number("f_r", 1), "f_{r1}");
+  EXPECT_EQ(draw::with_number("f_{AB}'", 1), "f_{AB1}'");
+  EXPECT_EQ(draw::with_number("\\tau^2", 3), "\\tau_{3}^2");
+  EXPECT_EQ(draw::with_number("both together", 1), "both together");
+  EXPECT_EQ(draw::with_number("", 1), "");
+}
+
+TEST_F(MarkedFilm, WhatAVectorIsWithIsLookedUp) {
+  const auto said = [&](const std::string& more) {
+    scene(std::string(kMarkedFilm) + "[[film.vector]]\nof = \"ball\"\n" + more);
+    return obscura("check scene.toml").err;
+  };
+  EXPECT_THAT(said("quantity = \"normal_force\"\nwith = \"flor\""), HasSubstr("no body is called 'flor'"));
+  EXPECT_THAT(said("quantity = \"spring_force\"\nwith = \"band\""), HasSubstr("no spring is called 'band'"));
+  EXPECT_THAT(said("quantity = \"joint_force\"\nwith = \"rod\""),
+              HasSubstr("no joint or bond is called 'rod'"));
+  EXPECT_THAT(said("quantity = \"weight\"\nwith = \"floor\""),
+              HasSubstr("'with' is of forces that have one arrow for each thing"));
 }
 
 /// A path of a wheel's rim after twenty turns is as round as at first: every vertex of it on the circle, and

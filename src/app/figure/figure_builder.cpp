@@ -155,13 +155,23 @@ FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::str
     take(scene, times, said);
     const std::vector<std::string>& titles = figure.titles;
     const bool entitled = !figure.room && std::size_t(run) < titles.size();
-    variants_.push_back({scene, entitled                 ? titles[std::size_t(run)]
-                                : variants.keys.empty() ? ""
-                                                        : '"' + Variation::spoken(variants[run].back()) + '"'});
+    variants_.push_back({scene, entitled ? titles[std::size_t(run)]
+                                : variants.keys.empty()
+                                    ? ""
+                                    : '"' + Variation::spoken(variants[run].back()) + '"'});
   }
   const int n = int(panels_.size()) *
                 (panels_.front().cast.dimension == 3 ? int(panels_.front().scene.cameras.size()) : 1);
   columns_ = std::min(n, wanted > 0 ? wanted : n <= 4 ? n : int(std::ceil(std::sqrt(n))));
+  // arrows of one name have the same numbers in all panels
+  std::vector<sim::Snapshot> moments;
+  for (const Cell& cell : cells()) moments.push_back(cell.panel->now);
+  draw::Marks numbered = panels_.front().scene.figure;
+  draw::number_arrows(numbered, panels_.front().cast, moments);
+  for (Panel& panel : panels_) {
+    std::vector<draw::Marks::Vector>& its = panel.scene.figure.vectors;
+    for (std::size_t i = 0; i < its.size(); ++i) its[i].numbered = numbered.vectors[i].numbered;
+  }
 }
 
 void FigureBuilder::take(const scene::Scene& scene, const std::vector<sim::Rational>& times,

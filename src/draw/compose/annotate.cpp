@@ -261,7 +261,11 @@ void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
     if (!view_.before(reading.tail)) continue;
     hang(reading.tail, reading.tail);
     const WordKey key{WordKey::vector, index, reading.part};
-    const std::string label = as_vector(vector.label);
+    const auto numbered = std::find(vector.numbered.begin(), vector.numbered.end(), reading.part);
+    const std::string label =
+        as_vector(numbered == vector.numbered.end()
+                      ? vector.label
+                      : with_number(vector.label, int(numbered - vector.numbered.begin()) + 1));
     const auto set = [&](double value) { return this->set(key, label, value, unit(vector.quantity), ink); };
     if (turns(vector.quantity)) {
       // arcs about one place lie around each other

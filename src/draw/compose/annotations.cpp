@@ -357,7 +357,10 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
 
   // one scale for each kind of arrow
   std::vector<sim::Snapshot> moments;
-  for (RunAhead::Sample& sample : ahead.samples) moments.push_back(std::move(sample.now));
+  std::vector<double> films;
+  for (RunAhead::Sample& sample : ahead.samples)
+    moments.push_back(std::move(sample.now)), films.push_back(sample.film);
+  number_arrows(marks_, cast_, moments, films);
   const Projection first = artist.projection(0, moments.front());
   const double scale = artist.scale(moments.front());
   Scales chosen = draw::scales(marks_, cast_, moments, first.window(), scale);
@@ -376,8 +379,6 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
   for (int panel = 0; panel < artist.panels(); ++panel) {
     LabelPlan plan;
     std::vector<std::vector<Offered>> offered(moments.size());
-    std::vector<double> films;
-    for (const RunAhead::Sample& sample : ahead.samples) films.push_back(sample.film);
     for (std::size_t k = 0; k < moments.size(); ++k) {
       List unused;
       Annotating how{.lettering = lettering_,

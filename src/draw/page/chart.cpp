@@ -16,9 +16,9 @@ constexpr double kAboveAxis = 4.5;  // points: how high above the axis the middl
 constexpr double kMargin = 36;  // page units at the weight 1, as of the caption
 // page units a point of a plot for print: digits 24 high, to be read from the back row
 constexpr double kType = 33 / 8.5;
-constexpr double kHead = 2.7;    // points
-// of its width: how tall a plot against a quantity is at most at the right, where it would be a strip; of what its axis spans:
-// how far it goes on beyond, so that a line does not run along the other axis
+constexpr double kHead = 2.7;  // points
+// of its width: how tall a plot against a quantity is at most at the right, where it would be a strip; of
+// what its axis spans: how far it goes on beyond, so that a line does not run along the other axis
 constexpr double kTallest = 1.1, kBeyondEnds = 0.05;
 constexpr double kAround = 0.8;  // around a dot, points
 constexpr double kFade = 0.008;  // of the run: how long before and after a name changes places it is faint

@@ -83,6 +83,10 @@ struct Marks {
     std::string label;
     std::optional<Color> color{};
     Interval shown{};
+    // of what its body touches and what holds it, Reading::part: these alone; empty: all
+    std::vector<int> with{};
+    // where it has several arrows at once: what they are of, in the order of their numbers
+    std::vector<int> numbered{};
   };
   struct Angle {
     int body = -1;                     // its own angle, or

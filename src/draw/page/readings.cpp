@@ -1,6 +1,8 @@
 #include "draw/page/readings.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "draw/page/touching.h"
 
@@ -126,8 +128,10 @@ Vec3 net_force(const sim::SceneInfo& cast, const sim::Snapshot& now, int body) {
 
 }  // namespace
 
-std::vector<Reading> readings(const Marks::Vector& vector, const sim::SceneInfo& cast,
-                              const sim::Snapshot& now) {
+namespace {
+
+std::vector<Reading> all_readings(const Marks::Vector& vector, const sim::SceneInfo& cast,
+                                  const sim::Snapshot& now) {
   if (vector.quantity == Quantity::position) {
     const Vec3 tail = vector.at ? place(*vector.at, now) : Vec3(Vec3::Zero());
     const Vec3 tip = vector.to         ? place(*vector.to, now)
@@ -183,6 +187,44 @@ std::vector<Reading> readings(const Marks::Vector& vector, const sim::SceneInfo&
       break;
   }
   return {};
+}
+
+}  // namespace
+
+std::vector<Reading> readings(const Marks::Vector& vector, const sim::SceneInfo& cast,
+                              const sim::Snapshot& now) {
+  std::vector<Reading> all = all_readings(vector, cast, now);
+  if (vector.with.empty()) return all;
+  // a rope over wheels has more parts, behind those of all joints
+  const bool joints = vector.quantity == Quantity::joint_force || vector.quantity == Quantity::joint_torque;
+  std::erase_if(all, [&](const Reading& each) {
+    const int part = joints ? each.part % int(cast.joints.size()) : each.part;
+    return std::find(vector.with.begin(), vector.with.end(), part) == vector.with.end();
+  });
+  return all;
+}
+
+void number_arrows(Marks& marks, const sim::SceneInfo& cast, std::span<const sim::Snapshot> moments,
+                   std::span<const double> films) {
+  for (Marks::Vector& vector : marks.vectors) {
+    vector.numbered.clear();
+    if (vector.label.empty()) continue;
+    bool several = false;
+    std::vector<int> seen;
+    for (std::size_t k = 0; k < moments.size(); ++k) {
+      const double film = films.empty() ? std::numeric_limits<double>::quiet_NaN() : films[k];
+      const bool shown = films.empty() ? vector.shown.in(int(k)) : vector.shown.has(moments[k].time, film);
+      if (!shown) continue;
+      int now = 0;
+      for (const Reading& each : readings(vector, cast, moments[k])) {
+        if (each.value.isZero(0)) continue;
+        ++now;
+        if (std::find(seen.begin(), seen.end(), each.part) == seen.end()) seen.push_back(each.part);
+      }
+      several = several || now > 1;
+    }
+    if (several) vector.numbered = std::move(seen);
+  }
 }
 
 Vec3 sum(Quantity quantity, int body, const sim::SceneInfo& cast, const sim::Snapshot& now) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -18,6 +19,11 @@ struct Reading {
 /// The arrows that a vector stands for at an instant: one a spring, one a joint, one a thing touched.
 std::vector<Reading> readings(const Marks::Vector& vector, const sim::SceneInfo& cast,
                               const sim::Snapshot& now);
+
+/// Numbers the arrows of each vector that is shown with several at one of `moments`: they have one label, and
+/// are told apart by their numbers. `films`: s of the film of each moment; none: of a figure.
+void number_arrows(Marks& marks, const sim::SceneInfo& cast, std::span<const sim::Snapshot> moments,
+                   std::span<const double> films = {});
 
 /// The value of a quantity of a body at an instant: the sum of its arrows.
 sim::Vec3 sum(Quantity quantity, int body, const sim::SceneInfo& cast, const sim::Snapshot& now);

@@ -486,6 +486,36 @@ std::string as_vector(const std::string& text) {
   return vector;
 }
 
+std::string with_number(const std::string& text, int number) {
+  const auto begin = text.begin();
+  std::size_t end = 0;
+  if (!text.empty() && text[0] == '\\') {
+    end = std::size_t(std::find_if_not(begin + 1, text.end(), formulas::latin) - begin);
+    const formulas::Name* name = formulas::entry(formulas::kNames, std::string_view(text).substr(1, end - 1));
+    if (!name || !italic(name->symbol)) return text;
+  } else {
+    end = std::size_t(std::find_if_not(begin, text.end(), formulas::latin) - begin);
+    if (end != 1) return text;
+  }
+  // its scripts, the subscript with the number
+  std::string scripts;
+  bool put = false;
+  std::size_t next = end;
+  while (next < text.size() && std::string_view("_^'").find(text[next]) != std::string_view::npos) {
+    const std::size_t from = next++;
+    if (text[from] != '\'') formulas::argument(text, next, false);
+    std::string script = text.substr(from, next - from);
+    if (text[from] == '_' && !put) {
+      const std::string_view its = std::string_view(script).substr(1);
+      const bool braced = its.starts_with('{') && its.ends_with('}');
+      script = fmt::format("_{{{}{}}}", braced ? its.substr(1, its.size() - 2) : its, number), put = true;
+    }
+    scripts += script;
+  }
+  if (!put) scripts = fmt::format("_{{{}}}", number) + scripts;
+  return text.substr(0, end) + scripts + text.substr(next);
+}
+
 std::string as_words(const std::string& text) {
   if (text.find_first_of("=_^\\$*{}<>+'\"") != text.npos) return text;
   // words of three letters or more, or one alone

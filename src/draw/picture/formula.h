@@ -65,6 +65,10 @@ void add(const Formula& formula, const Point& at, List& list, const Hold& hold =
 /// product: of "m g" neither letter is known to be one.
 std::string as_vector(const std::string& text);
 
+/// Mathematics whose first symbol, a letter or a command that stands for one, has a number, behind the
+/// subscript that it has: "N = {}" is "N_{1} = {}". Other text, words too, stays as it is.
+std::string with_number(const std::string& text, int number);
+
 /// `text` as it is where it is mathematics; plain words, such as a body is called by, upright.
 std::string as_words(const std::string& text);
 

@@ -69,8 +69,9 @@ Color faintest(Color strong, const Palette& colours) {
 }
 
 Color turn(int index) {
-  static const std::array<Color, 6> order{*color("sky"),    *color("orange"), *color("green"),
-                                          *color("purple"), *color("blue"),   *color("yellow")};
+  // in grey, too, the first four are told apart
+  static const std::array<Color, 6> order{*color("orange"), *color("blue"), *color("green"),
+                                          *color("yellow"), *color("sky"),  *color("purple")};
   return order[std::size_t(index) % order.size()];
 }
 
