@@ -42,10 +42,12 @@ Painter::Painter(const Functions& gl, int width, int height)
       disc_program_(gl, "disc.vert", "disc.frag"),
       dot_program_(gl, "disc.vert", "dot.frag"),
       box_program_(gl, "box.vert", "box.frag"),
+      bar_program_(gl, "box.vert", "bar.frag"),
       slab_program_(gl, "box.vert", "slab.frag"),
       frame_program_(gl, "frame.vert", "frame.frag"),
       stroke_program_(gl, "stroke.vert", "stroke.frag"),
       polygon_program_(gl, "polygon.vert", "polygon.frag"),
+      quadrangle_program_(gl, "quadrangle.vert", "quadrangle.frag"),
       glyph_program_(gl, "glyph.vert", "glyph.frag"),
       ground_uniform_(stroke_program_.uniform("ground")),
       disc_array_(gl, sizeof(Disc), 1,
@@ -67,6 +69,11 @@ Painter::Painter(const Functions& gl, int width, int height)
                      {{4, GL_FLOAT, offsetof(Polygon, x0)},
                       {2, GL_FLOAT, offsetof(Polygon, first)},
                       {4, GL_UNSIGNED_BYTE, offsetof(Polygon, fill)}}),
+      quadrangle_array_(gl, sizeof(Quadrangle), 1,
+                        {{4, GL_FLOAT, offsetof(Quadrangle, x0)},
+                         {4, GL_FLOAT, offsetof(Quadrangle, corners)},
+                         {4, GL_FLOAT, offsetof(Quadrangle, corners) + 4 * sizeof(float)},
+                         {4, GL_UNSIGNED_BYTE, offsetof(Quadrangle, fill)}}),
       glyph_array_(gl, sizeof(Glyph), 1,
                    {{4, GL_FLOAT, offsetof(Glyph, x)},
                     {2, GL_FLOAT, offsetof(Glyph, u)},
@@ -74,8 +81,9 @@ Painter::Painter(const Functions& gl, int width, int height)
       index_buffer_(gl, GL_ELEMENT_ARRAY_BUFFER),
       edge_buffer_(gl, GL_TEXTURE_BUFFER),
       glyph_pictures_(gl) {
-  for (const Program* program : {&disc_program_, &dot_program_, &box_program_, &slab_program_,
-                                 &frame_program_, &stroke_program_, &polygon_program_, &glyph_program_}) {
+  for (const Program* program :
+       {&disc_program_, &dot_program_, &box_program_, &bar_program_, &slab_program_, &frame_program_,
+        &stroke_program_, &polygon_program_, &quadrangle_program_, &glyph_program_}) {
     program->use();
     gl.Uniform2f(program->uniform("per_half_size"), 2.0f / float(width), 2.0f / float(height));
   }
@@ -90,6 +98,7 @@ void Painter::paint(const draw::List& list, draw::Color ground, bool transparent
   boxes_.clear();
   strip_.clear();
   polygons_.clear();
+  quadrangles_.clear();
   edges_.clear();
   glyphs_.clear();
   for (const draw::Batch& batch : list.batches) encode(list, batch, damage);
@@ -217,8 +226,8 @@ void Painter::add(const draw::Box& box, Damage& damage) {
                         Box{float(center.x()), float(center.y()), float(x), float(y), float(u.x()),
                             float(u.y()), float(outlined), float(dot), fill, outline}});
   };
-  push(half.minCoeff() - line < kSlab ? Shape::slab : Shape::box, half.x(), half.y(), line, 0, box.fill,
-       box.outline);
+  const Shape shape = half.minCoeff() - line < kSlab ? Shape::slab : line > 0 ? Shape::box : Shape::bar;
+  push(shape, half.x(), half.y(), line, 0, box.fill, box.outline);
   if (box.axis > 0 && box.axis_line > 0) {
     push(Shape::frame, box.axis * scale_, box.axis_line * scale_ / 2, 0, 1.5 * box.axis_line * scale_,
          box.axis_color, box.axis_color);
@@ -279,6 +288,17 @@ void Painter::add(const draw::List& list, const draw::Polygon& polygon, Damage& 
   bounds = {bounds.x0 - 0.5f, bounds.y0 - 0.5f, bounds.x1 + 0.5f, bounds.y1 + 0.5f};
   if (!touches(bounds, damage)) return;
   const Bounds page = bounds & Bounds{-1, -1, float(width_ + 1), float(height_ + 1)};
+  if (count == 3 || count == 4) {
+    Quadrangle& made =
+        quadrangles_.emplace_back(Quadrangle{page.x0, page.y0, page.x1, page.y1, {}, polygon.fill});
+    // of three the last is there twice
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Edge& edge = outline_[std::min(i, outline_.size() - 1)];
+      made.corners[2 * i] = edge.px, made.corners[2 * i + 1] = edge.py;
+    }
+    const int end = int(quadrangles_.size());
+    return run(Shape::quadrangle, end - 1, end);
+  }
   const int first = int(polygons_.size());
   for (const Band& band : banded(outline_, page.y0, page.y1, edges_))
     polygons_.push_back(
@@ -322,6 +342,7 @@ void Painter::upload() {
     gl_.BindTexture(GL_TEXTURE_BUFFER, edge_texture_);
     gl_.TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, edge_buffer_.name());
   }
+  if (!quadrangles_.empty()) quadrangle_array_.upload(quadrangles_);
   if (!glyphs_.empty()) {
     glyph_array_.upload(glyphs_);
     glyph_pictures_.bind();
@@ -351,6 +372,9 @@ void Painter::draw(const Run& run, draw::Color ground, bool transparent) {
     case Shape::box:
       quads(box_program_, box_array_);
       break;
+    case Shape::bar:
+      quads(bar_program_, box_array_);
+      break;
     case Shape::slab:
       quads(slab_program_, box_array_);
       break;
@@ -359,6 +383,9 @@ void Painter::draw(const Run& run, draw::Color ground, bool transparent) {
       break;
     case Shape::polygon:
       quads(polygon_program_, polygon_array_);
+      break;
+    case Shape::quadrangle:
+      quads(quadrangle_program_, quadrangle_array_);
       break;
     case Shape::glyph:
       quads(glyph_program_, glyph_array_);

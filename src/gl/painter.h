@@ -38,12 +38,17 @@ class Painter {
     float first, count;
     draw::Color fill;
   };
+  struct Quadrangle {
+    float x0, y0, x1, y1;
+    float corners[8];
+    draw::Color fill;
+  };
   struct Glyph {
     float x, y, width, height;
     float u, v;
     draw::Color ink;
   };
-  enum class Shape { disc, dot, box, slab, frame, stroke, darken, lighten, polygon, glyph };
+  enum class Shape { disc, dot, box, bar, slab, frame, stroke, darken, lighten, polygon, quadrangle, glyph };
   /// The geometry of one draw call.
   struct Run {
     Shape shape;
@@ -74,10 +79,10 @@ class Painter {
   const Functions& gl_;
   int width_, height_;
   double scale_;  // px a page unit
-  Program disc_program_, dot_program_, box_program_, slab_program_, frame_program_, stroke_program_,
-      polygon_program_, glyph_program_;
+  Program disc_program_, dot_program_, box_program_, bar_program_, slab_program_, frame_program_,
+      stroke_program_, polygon_program_, quadrangle_program_, glyph_program_;
   int ground_uniform_;
-  VertexArray disc_array_, box_array_, strip_array_, polygon_array_, glyph_array_;
+  VertexArray disc_array_, box_array_, strip_array_, polygon_array_, quadrangle_array_, glyph_array_;
   Buffer index_buffer_, edge_buffer_;
   GLuint edge_texture_ = 0;
   Glyphs glyph_pictures_;
@@ -92,6 +97,7 @@ class Painter {
   Strip strip_;
   std::vector<Polygon> polygons_;
   std::vector<Edge> edges_, outline_;  // of all polygons, band by band; of the one at hand
+  std::vector<Quadrangle> quadrangles_;
   std::vector<Glyph> glyphs_;
 
  public:

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "color_vision.h"
+#include "draw/picture/theme.h"
 
 namespace obscura::draw {
 namespace {
@@ -65,6 +67,32 @@ TEST(Color, ContrastIsThatOfWcag) {
   EXPECT_NEAR(contrast(grey, white), 4.54, 0.005);
   EXPECT_EQ(contrast(white, grey), contrast(grey, white));
   EXPECT_EQ(contrast(grey, grey), 1);
+}
+
+/// Words in the colour of a thing can be read on either theme, and those that could be are not changed.
+TEST(Color, WordsAreLegible) {
+  for (const Theme theme : {Theme::paper, Theme::screen}) {
+    const Palette colours = palette(theme);
+    for (const char* name : kNames) {
+      Color thin = *color(name);
+      thin.a = 100;
+      const Color words = legible(thin, colours);
+      EXPECT_EQ(words.a, 100) << name;
+      EXPECT_GE(contrast({words.r, words.g, words.b}, colours.room), 4.5) << name;
+      if (contrast(*color(name), colours.room) >= 4.5) {
+        EXPECT_EQ(words, thin) << name;
+      }
+    }
+  }
+}
+
+/// In grey, too: the colours of the first things are as far apart in lightness as blue and vermilion.
+TEST(Color, TheFirstInTurnAreToldApartInGrey) {
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < i; ++j) {
+      const auto lightness = [](Color c) { return lab(linear(c))[0]; };
+      EXPECT_GT(std::abs(lightness(turn(i)) - lightness(turn(j))), 8) << i << ' ' << j;
+    }
 }
 
 }  // namespace

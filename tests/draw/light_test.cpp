@@ -36,7 +36,7 @@ TEST(Light, FacesThatLookAwayFromItDiffer) {
 /// What faces the light is brighter than anything else, and nothing is black.
 TEST(Light, TheSunIsStronger) {
   const Light sun = light({-0.6, 1, 0.42});
-  const Color own = turn(1);
+  const Color own = *color("orange");
   const double bright = luminance(shade(own, Theme::paper, sun, sun.toward).lit);
   for (int k = 0; k < 24; ++k) {
     const double a = k * std::numbers::pi / 12;

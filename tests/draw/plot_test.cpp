@@ -114,7 +114,7 @@ TEST(Plot, ARangeCutsLinesOffAndNamesThemWhereTheyLeave) {
     EXPECT_NEAR(clip.y + clip.height, area.bottom, 2);
   }
   List names;
-  draw_names(plot, area, names);
+  draw_names(plot, area, palette(Theme::paper), names);
   for (const Text& text : names.texts) {
     // at the right end, and beside its last value in the range
     const double x = said(text) == "here" ? area.right : area.at(2, 4).x();

@@ -266,7 +266,9 @@ void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
         as_vector(numbered == vector.numbered.end()
                       ? vector.label
                       : with_number(vector.label, int(numbered - vector.numbered.begin()) + 1));
-    const auto set = [&](double value) { return this->set(key, label, value, unit(vector.quantity), ink); };
+    const auto set = [&](double value) {
+      return this->set(key, label, value, unit(vector.quantity), legible(ink, colours_));
+    };
     if (turns(vector.quantity)) {
       // arcs about one place lie around each other
       const auto among = std::count_if(all.data(), &reading, [&](const Reading& other) {
@@ -403,7 +405,7 @@ void Notes::point(int index, const Marks::Point& point) {
   hang(place(point.at, now_), place(point.at, now_));
   const Color ink = inked(point.color.value_or(colours_.ink), colours_);
   if (point.dot) dots_.push_back({at, ink, hang_});
-  const Formula f = formula(point.label, type_, ink);
+  const Formula f = formula(point.label, type_, legible(ink, colours_));
   // its dot, and the halo around that
   const double clear = dot_radius_ + 1.2 * point_;
   placing_.avoid(at - Point(clear, 0), at + Point(clear, 0), 8);

@@ -198,7 +198,7 @@ void draw_run_names(const std::vector<ComparedRun>& runs, const std::vector<RunI
     std::vector<Span> spans{{.text = in_letters(runs[i].name),
                              .face = Face::bold,
                              .size = kWords * weight,
-                             .color = runs[i].color}};
+                             .color = legible(runs[i].color, colours)}};
     if (!words.empty())
       spans.push_back({.text = " " + words,
                        .face = Face::medium,

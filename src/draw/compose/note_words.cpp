@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "draw/compose/notes.h"
 #include "draw/page/measure.h"
 #include "draw/picture/convex.h"
+#include "draw/picture/rope_way.h"
 
 namespace obscura::draw {
 namespace {
@@ -24,6 +26,8 @@ constexpr double kBracketHalf = 24;        // page units: half the width of what
 constexpr double kMargin = 0.2, kMarginInPrint = 0.25;  // around words, of their height
 constexpr double kCovered = 60;                         // the cost of words over a body
 constexpr double kOnOutline = 8;    // of each unit of a body's outline under words of a film
+constexpr double kRailChord = 8;    // the length of a curve's pieces, as words see them
+constexpr double kOnRail = 4;       // of each unit of a curve under words
 constexpr double kOnTrail = 0.8;    // of each unit of a trail or path under words
 constexpr double kNameCovered = 6;  // as against the cost of other words over something
 
@@ -256,7 +260,31 @@ void Notes::avoid_joints() {
     const auto line = [&](const Vec3& a, const Vec3& b) {
       if (view_.before(a) && view_.before(b)) placing_.avoid(view_.page(a), view_.page(b), 2);
     };
-    line(joint.a, joint.b);
+    if (cast_.joints[i].kind != sim::JointKind::pulley) {
+      line(joint.a, joint.b);
+      continue;
+    }
+    const std::vector<Vec3> way = rope_way(cast_, i, now_);
+    for (std::size_t k = 0; k + 1 < way.size(); ++k) line(way[k], way[k + 1]);
+  }
+  avoid_rails();
+}
+
+// the curves on which bodies roll and slide, as chords of some length on the page
+void Notes::avoid_rails() {
+  for (const sim::SceneInfo::Rail& rail : cast_.rails) {
+    std::optional<Point> last;
+    for (std::size_t k = 0; k < rail.places.size(); ++k) {
+      const Vec3 at = place({rail.body, rail.places[k]}, now_);
+      if (!view_.before(at)) {
+        last.reset();
+        continue;
+      }
+      const Point here = view_.page(at);
+      if (last && (here - *last).norm() < kRailChord * point_ && k + 1 < rail.places.size()) continue;
+      if (last) placing_.avoid(*last, here, kOnRail);
+      last = here;
+    }
   }
 }
 

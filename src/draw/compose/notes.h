@@ -48,6 +48,7 @@ class Notes {
   void avoid_areas();
   void avoid_springs();
   void avoid_joints();
+  void avoid_rails();
   void avoid_own_arrows();
   std::vector<std::vector<Point>> forms(int body, int corners) const;
   Formula set(const WordKey& key, const std::string& text, double value, std::string_view unit, Color ink);

@@ -176,8 +176,8 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
       const bool placed = over_time && inside;
       const double high = at.y() + (placed ? panel.offset(i, line.along.back()) : 0);
       draw_name(panel.plot, i, panel.area,
-                {at.x() + (kHead + 2.2) * unit, std::min(high, panel.area.bottom - kAboveAxis * unit)}, list,
-                placed ? panel.seen(i, line.along.back()) : 1);
+                {at.x() + (kHead + 2.2) * unit, std::min(high, panel.area.bottom - kAboveAxis * unit)},
+                colours_, list, placed ? panel.seen(i, line.along.back()) : 1);
     }
   }
   list.of({});

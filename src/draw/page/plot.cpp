@@ -410,17 +410,17 @@ void draw_dots(const Plot& plot, const PlotArea& area, const Palette& colours, L
   }
 }
 
-void draw_name(const Plot& plot, std::size_t line, const PlotArea& area, const Point& at, List& list,
-               double seen) {
+void draw_name(const Plot& plot, std::size_t line, const PlotArea& area, const Point& at,
+               const Palette& colours, List& list, double seen) {
   if (!named(plot) || !(seen > 0)) return;
   const Series& its = plot.lines[line];
-  Color color = its.color;
+  Color color = legible(its.color, colours);
   color.a = std::uint8_t(std::lround(color.a * std::min(seen, 1.0)));
   add(formula(its.label + its.note, kTypeSize * area.point, color),
       at + Point(0, 0.24 * kTypeSize * area.point), list);
 }
 
-void draw_names(const Plot& plot, const PlotArea& area, List& list) {
+void draw_names(const Plot& plot, const PlotArea& area, const Palette& colours, List& list) {
   // the lowest first
   std::vector<std::size_t> order(plot.lines.size());
   std::iota(order.begin(), order.end(), 0);
@@ -429,7 +429,7 @@ void draw_names(const Plot& plot, const PlotArea& area, List& list) {
   for (const std::size_t i : order) {
     const Point end = end_of(plot, area, plot.lines[i]);
     const double x = leaves(plot, area, end) ? end.x() : area.right;
-    draw_name(plot, i, area, {x + 4 * area.point, area.names[i]}, list);
+    draw_name(plot, i, area, {x + 4 * area.point, area.names[i]}, colours, list);
   }
 }
 
@@ -448,7 +448,7 @@ void draw_plots(const std::vector<Plot>& plots, const Palette& colours, const st
     draw_axes(*shown[i], areas[i], colours, list);
     draw_lines(*shown[i], areas[i], list);
     draw_dots(*shown[i], areas[i], colours, list);
-    draw_names(*shown[i], areas[i], list);
+    draw_names(*shown[i], areas[i], colours, list);
   }
 }
 

@@ -83,10 +83,10 @@ void draw_lines(const Plot& plot, const PlotArea& area, List& list, std::optiona
 /// The dots with names.
 void draw_dots(const Plot& plot, const PlotArea& area, const Palette& colours, List& list);
 /// The names of the lines, beside their ends. A line that is alone is named by its axis.
-void draw_names(const Plot& plot, const PlotArea& area, List& list);
+void draw_names(const Plot& plot, const PlotArea& area, const Palette& colours, List& list);
 /// One of them, with its left end's middle at `at`. `seen`: from 0, not at all, to 1.
-void draw_name(const Plot& plot, std::size_t line, const PlotArea& area, const Point& at, List& list,
-               double seen = 1);
+void draw_name(const Plot& plot, std::size_t line, const PlotArea& area, const Point& at,
+               const Palette& colours, List& list, double seen = 1);
 inline constexpr double kNamesApart = 10;  // points
 
 /// Puts plots down in rectangles of a sheet under each other (kPoint units a point), with type so much

@@ -9,6 +9,7 @@ namespace {
 constexpr Color kWhite{0xFF, 0xFF, 0xFF}, kBlack{0, 0, 0};
 constexpr double kFaint = 0.75;  // luminance: white is 1
 constexpr double kFaintestInk = 0.15;
+constexpr double kLegible = 4.5;  // contrast
 
 }  // namespace
 
@@ -66,6 +67,16 @@ Color faintest(Color strong, const Palette& colours) {
     if (const Color c = mix(colours.room, strong, percent / 100.0); contrast(c, colours.room) >= least)
       return c;
   return strong;
+}
+
+Color legible(Color own, const Palette& colours) {
+  for (int percent = 0; percent < 100; percent += 5) {
+    Color words = mix(own, colours.ink, percent / 100.0);
+    if (words.a = 255; contrast(words, colours.room) < kLegible) continue;
+    words.a = own.a;
+    return words;
+  }
+  return colours.ink;
 }
 
 Color turn(int index) {

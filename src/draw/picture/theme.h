@@ -48,6 +48,10 @@ inline constexpr double kHushed = 0.35;
 /// as 15 % of the way to the ink is, or not faded at all.
 Color faintest(Color strong, const Palette& colours);
 
+/// The colour of words of a thing of this colour: so near to the ink that they are read, by WCAG's contrast
+/// of 4.5 to the room's colour. Its alpha stays.
+Color legible(Color own, const Palette& colours);
+
 /// The colours that bodies without one take in turn. Vermilion is left to forces.
 Color turn(int index);
 
