@@ -310,7 +310,10 @@ TEST_F(States, NameTheSolver) {
   const std::string said = obscura("check scene.toml").out;
   EXPECT_NE(said.find("iterative solver: 42 bodies and 0 points that move; up to 20 and 400"),
             std::string::npos);
-  EXPECT_NE(said.find("impacts are solved pair after pair"), std::string::npos);
+  EXPECT_NE(said.find("impacts of up to 8 contacts are solved together"), std::string::npos);
+  EXPECT_NE(obscura("check scene.toml --set physics.impacts=sequential")
+                .out.find("impacts are solved pair after pair"),
+            std::string::npos);
   scene(kParabola);
   EXPECT_NE(obscura("check scene.toml").out.find("direct solver: "), std::string::npos);
   EXPECT_EQ(nlohmann::json::parse(

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "scene/scene.h"
@@ -215,6 +216,80 @@ TEST(Impacts, HingesInSpaceKeepTheirEnergy) {
       const double begun = run.at(0).energies.total();
       for (const double t : {1.0, 4.0, 8.0})
         EXPECT_NEAR(run.at(t).energies.total(), begun, 1e-7) << mode << second << t;
+    }
+  }
+}
+
+// A ball of radius 0.1 in either dimension at (x, y), with the rest of its keys.
+std::string ball_at(int dimension, const std::string& name, double mass, double x, double y, double vx,
+                    double vy, const std::string& more) {
+  return disc(name, mass, 0.1,
+              fmt::format("position = [{0}, {1}{4}]\nvelocity = [{2}, {3}{4}]\n{5}", x, y, vx, vy,
+                          dimension == 2 ? "" : ", 0", more));
+}
+
+// What meets in one instant is solved together, by every solver to the same end, mirrored where it is
+// mirrored, with restitution and friction: two balls on both ends of a slab; one between two; one on a row
+// that touches; one on a slab on which two others lie; and balls on rods.
+TEST(Impacts, OfOneInstantAreSolvedTogetherByEverySolver) {
+  for (const int dimension : {2, 3}) {
+    const std::string deep = dimension == 2 ? "" : ", 0.4";
+    for (const double e : {1.0, 0.5, 0.0}) {
+      for (const double mu : {0.0, 0.3}) {
+        const std::string made = fmt::format("elasticity = {}\nfriction = {}\n", e, mu);
+        const auto ball = [&](const std::string& name, double mass, double x, double y, double vx,
+                              double vy) { return ball_at(dimension, name, mass, x, y, vx, vy, made); };
+        const auto slab = [&](double height) {
+          return fmt::format("[[box]]\nname = \"m\"\nsize = [0.4, {}{}]\nmass = 2\nposition = [0, 0{}]\n{}",
+                             height, deep, dimension == 2 ? "" : ", 0", made);
+        };
+        const std::string rods = "[[joint]]\ntype = \"rod\"\nbetween = [\"c\", \"d\"]\n";
+        const std::tuple<const char*, double, std::string> cases[] = {
+            {"both ends", 0.51, slab(2) + ball("p", 1, -1.3, 0.9, 2, 0) + ball("q", 1, 1.3, -0.9, -2, 0)},
+            {"between two", 0.336,
+             ball("a", 1, -0.15, 0, 0, 0) + ball("b", 2, 0.15, 0, 0, 0) +
+                 ball("c", 1.5, 0, std::sqrt(0.0175) + 1, 0, -3)},
+            {"a row", 0.27,
+             ball("a", 1, -1, 0.02, 3, 0) + ball("b", 1, 0, 0, 0, 0) + ball("c", 2, 0.2, 0, 0, 0) +
+                 ball("d", 1, 0.4, 0, 0, 0)},
+            {"on a slab", 0.51,
+             slab(1) + ball("p", 1, -1.3, 0.2, 2, 0.3) + ball("q", 1, 0.3, 0.3, 0, 0) +
+                 ball("r", 1, 0.3, -0.3, 0, 0)},
+            {"on a rod", 0.27,
+             ball("a", 1, -1, 0.02, 3, 0) + ball("b", 1, -0.2, 0, 0, 0) + ball("c", 1, 0, 0, 0, 0) +
+                 ball("d", 1, 0.3, 0.6, 0, 0) + rods},
+        };
+        for (const auto& [what, time, bodies] : cases) {
+          // what stays in touch turns on; forces of contact are of first order by iterations
+          const bool stays = e == 0 || what == std::string("on a slab");
+          std::vector<sim::Snapshot> ends;
+          for (const Manner& manner : kManners) {
+            for (const int rate : {60, 600}) {
+              SCOPED_TRACE(fmt::format("{} in {}D by {} at {}, e = {}, mu = {}", what, dimension, manner.name,
+                                       rate, e, mu));
+              const TextRun run(empty_room(manner, dimension, "") + fmt::format("rate = {}\n", rate) +
+                                bodies);
+              ends.push_back(run.at(time));
+              for (std::size_t i = 0; i < ends[0].bodies.size(); ++i) {
+                EXPECT_LT((ends.back().bodies[i].velocity - ends[0].bodies[i].velocity).norm(),
+                          stays ? 5e-3 : 2e-6)
+                    << i;
+                EXPECT_LT((ends.back().bodies[i].spin - ends[0].bodies[i].spin).norm(), stays ? 5e-3 : 1e-5)
+                    << i;
+              }
+            }
+          }
+          if (what == std::string("both ends")) {
+            for (const sim::Snapshot& end : ends) {
+              const std::size_t p = 0, q = 1, m = 2;
+              ASSERT_EQ(end.bodies.size(), 3u);
+              EXPECT_LT((end.bodies[p].velocity + end.bodies[q].velocity).norm(), 1e-9);
+              EXPECT_LT((end.bodies[p].spin - end.bodies[q].spin).norm(), 1e-9);
+              EXPECT_LT(end.bodies[m].velocity.norm(), 1e-9);
+            }
+          }
+        }
+      }
     }
   }
 }

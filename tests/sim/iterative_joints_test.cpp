@@ -268,7 +268,7 @@ TEST(IterativeJoints, WarmStepAllocatesNothing) {
   State<2> state = world.state;
   Stepper<2> stepper(world.model);
   stepper.begin(state);
-  for (int i = 0; i < 600; ++i) ASSERT_FALSE(stepper.step(state));
+  for (int i = 0; i < 900; ++i) ASSERT_FALSE(stepper.step(state));
   const std::size_t before = allocations();
   for (int i = 0; i < 300; ++i) ASSERT_FALSE(stepper.step(state));
   EXPECT_EQ(allocations(), before);

@@ -175,9 +175,21 @@ TEST(PlaneIterative, CradleHandsTheBlowOn) {
   r.world.model.gravity = {0, 0};
   r.disc(0.1, {-0.5, 0}, 0, 1, {1, 0});
   for (int i = 0; i < 4; ++i) r.disc(0.1, {0.2 * i, 0}, 0, 1);
+  r.world.model.impacts = Impacts::sequential;
   r.run(1);
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(r.state().v[i][0], 0, 1e-12) << i;
   EXPECT_NEAR(r.state().v[4][0], 1, 1e-12);
+}
+
+// by Newton's law for all at once: the pair that meets parts as fast as it met, the others stay together
+TEST(PlaneIterative, WhatTouchesMeetsABlowTogether) {
+  Room r;
+  r.world.model.gravity = {0, 0};
+  r.disc(0.1, {-0.5, 0}, 0, 1, {1, 0});
+  for (int i = 0; i < 4; ++i) r.disc(0.1, {0.2 * i, 0}, 0, 1);
+  r.run(1);
+  EXPECT_NEAR(r.state().v[0][0], -0.6, 1e-12);
+  for (int i = 1; i < 5; ++i) EXPECT_NEAR(r.state().v[i][0], 0.4, 1e-12) << i;
 }
 
 // e = 0: what is left of the blow is what the iterations leave, 1e-7 widths a second

@@ -75,7 +75,10 @@ std::string contact(const sim::Model<D>& model) {
                       count(std::size_t(crowd.points), "point", "points"), sim::kMostBodies<D>,
                       sim::kMostPoints);
   return fmt::format("{} solver: {}{}", its.name, why,
-                     its.exact ? "" : "; impacts are solved pair after pair");
+                     its.exact ? ""
+                     : model.impacts == sim::Impacts::sequential
+                         ? "; impacts are solved pair after pair"
+                         : "; of one instant, impacts of up to 8 contacts are solved together");
 }
 
 // how many there are of each kind; bodies by what they are made of

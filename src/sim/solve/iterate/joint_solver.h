@@ -103,6 +103,11 @@ class JointSolver final : public System {
     std::vector<double> answer[2];  // impulses of the rows of each, in the order of elimination
     std::vector<std::pair<int, double>> affected[2];  // which of them it moves by a unit, and how fast
   };
+  /// Makes room for the reaction to any row, so that none allocates later.
+  void reserve(JointResponse& response) const {
+    for (int s = 0; s < 2; ++s)
+      response.answer[s].reserve(rows_.size()), response.affected[s].reserve(rows_.size());
+  }
   /// Computes the reaction to response.row. After compute_rows().
   void compute_response(JointResponse& response);
   /// The speed along the row of p by a unit of impulse along that of q, with the joints' reaction, 1/kg.

@@ -44,7 +44,7 @@ PlaneIterative::PlaneIterative(const Model<D>& model, const std::vector<Path<D>>
     : Iterative(model, paths, 4 * sim::allowed_overlap(model).share + 2 * AllowedOverlap::kLeast),
       cores_(model),
       pairs_(model, cores_),
-      impacts_(cores_, pairs_),
+      impacts_(cores_, pairs_, model.impacts == Impacts::simultaneous),
       driven_(std::size_t(drives_.size())) {
   const int n = int(model.bodies.size());
   span_ = double(every_) * (1 / value(model.rate));

@@ -204,6 +204,17 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& 
   return false;
 }
 
+// Touch k of an impact where its row stands; whether it is closed.
+bool Impacts::place_touch(const TouchRow& r, double far, int k, Impact& impact) {
+  impact.gap[k] = r.gap, impact.met[k] = r.gap <= kTogether * far;
+  // what meets is pushed in one point, so that angular momentum stays; what is to come together yet is
+  // rubbed where it is touched
+  const double apart = impact.met[k] ? 0 : 0.5 * r.gap;
+  impact.pushes[0][k] = {r.nx, r.ny, r.na, r.nb};
+  impact.pushes[1][k] = {-r.ny, r.nx, r.ta + apart, r.tb - apart};
+  return impact.met[k];
+}
+
 // When and where a pair meets with an impact in the step, into `impact`; false where it does not.
 bool Impacts::find_impact(const Pair& pair, Impact& impact, const ContactBatch& g, const Step& step) {
   const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
@@ -215,12 +226,7 @@ bool Impacts::find_impact(const Pair& pair, Impact& impact, const ContactBatch& 
   bool any = false;
   for (int k = 0; k < pair.touches; ++k) {
     const TouchRow& r = at.rows[k];
-    impact.gap[k] = r.gap, impact.met[k] = r.gap <= kTogether * g.far[lane];
-    // what meets is pushed in one point, so that angular momentum stays; what is to come together yet is
-    // rubbed where it is touched
-    const double apart = impact.met[k] ? 0 : 0.5 * r.gap;
-    impact.pushes[0][k] = {r.nx, r.ny, r.na, r.nb};
-    impact.pushes[1][k] = {-r.ny, r.nx, r.ta + apart, r.tb - apart};
+    place_touch(r, g.far[lane], k, impact);
     const double vn = normal_speed(r, at.a, at.b);
     if (impact.met[k]) impact.speed = std::max(impact.speed, -vn);
     any = any || (impact.met[k] && vn < g.impact_speed[lane]);

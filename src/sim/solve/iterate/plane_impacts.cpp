@@ -21,16 +21,17 @@ namespace obscura::sim::plane {
 namespace {
 
 constexpr std::size_t kPairsAhead = 4;  // pairs that are asked for, as they are far apart in memory
-constexpr double kLocked = 1e-9;        // of what a push moves without joints
 
 }  // namespace
 
-Impacts::Impacts(const CoreShapes& cores, const Pairs& pairs)
-    : pairs_(pairs), bounding_radius_(cores.bounding_radius) {
+Impacts::Impacts(const CoreShapes& cores, const Pairs& pairs, bool together)
+    : pairs_(pairs), bounding_radius_(cores.bounding_radius), together_(together) {
   const int bodies = int(bounding_radius_.size());
   bounding_radius_.push_back(0);
   around_.build(bodies, 0, [](int, const auto&) {});
   first_.assign(bodies + 1, -1), when_.assign(bodies + 1, -1), rounds_.assign(bodies + 1, 0);
+  crowded_.assign(bodies + 1, 0);
+  meetings_.reserve(InstantImpact<2>::kMost + 1), closed_.reserve(InstantImpact<2>::kMost + 2);
   pose_.resize(bodies + 1), way_.resize(bodies + 1), now_.resize(bodies + 1), dv_impacts_.resize(bodies + 1);
 }
 
@@ -147,8 +148,8 @@ void Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
     compute_responses(pair, pushes, closes, joints);
     // joints may leave it nothing to move
     for (int k = 0; k < 2; ++k)
-      closes[k] =
-          closes[k] && joints.response_between(responses_[0][k], responses_[0][k]) > kLocked * (ima + imb);
+      closes[k] = closes[k] && joints.response_between(responses_[0][k], responses_[0][k]) >
+                                   InstantImpact<2>::kLockedPush * (ima + imb);
   }
 
   const Motion va = motion_at(a, impact.when, step), vb = motion_at(b, impact.when, step);
@@ -170,10 +171,6 @@ void Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
   }
   double impulses[4];
   solve(system, impulses);
-  const auto give = [&](int body, double x, double y, double w) {
-    now_[body].x += x, now_[body].y += y, now_[body].w += w;
-    dv_impacts_[body].x += x, dv_impacts_[body].y += y, dv_impacts_[body].w += w;
-  };
   const auto push = [&](int across, int k, double l) {
     if (tied) {
       joints.each_push(responses_[across][k], l, [&](int body, const Vec<2>& v, const AngularVec<2>& w) {
@@ -240,11 +237,28 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
   for (const Impact& impact : impacts_) waiting_[impact.pair] = 0;
 }
 
+// notes it, and looks anew at all that it moves
+void Impacts::had_impact(const Impact& impact, const Step& step, JointSolver<2>& joints) {
+  const Pair& pair = step.pairs[impact.pair];
+  impacts_.push_back(impact);
+  // what only passes a blow on may still have one of its own
+  if (impact.speed > pair.impact_speed) impacts_of_[impact.pair] = 1;
+  for (const int side : {pair.a, pair.b}) {
+    if (side < 0 || now_[side].im == 0) continue;
+    joints.each_tied(side, [&](int body) {
+      ++rounds_[body];
+      for (const int next : around(body)) look_at(next);
+    });
+  }
+}
+
 int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
                  const std::vector<Pose>& poses, const std::vector<Motion>& old,
                  const std::vector<Motion>& dv, std::vector<Motion>& v, const StepConstants& pace,
                  JointSolver<2>& joints) {
   for (const int body : bodies_) when_[body] = first_[body] = -1, rounds_[body] = 0;
+  for (const int body : crowd_) crowded_[body] = 0;
+  crowd_.clear();
   for (const Impact& impact : impacts_) {
     if (impact.pair < int(impacts_of_.size())) impacts_of_[impact.pair] = 0;
   }
@@ -280,20 +294,20 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
       break;
     }
     const Pair& pair = pairs[impact.pair];
-    if (impacts_.size() == kMostImpacts) {
+    if (impacts_.size() >= kMostImpacts) {
       for (const int i : queue_) waiting_[i] = 0;
       return pair.a;
     }
-    resolve(impact, batches, step, joints);
-    impacts_.push_back(impact), impacts_of_[impact.pair] = 1;
     if (at == queue_.size()) queue_.clear(), at = 0;
-    for (const int side : {pair.a, pair.b}) {
-      if (side < 0 || now_[side].im == 0) continue;
-      joints.each_tied(side, [&](int body) {
-        ++rounds_[body];
-        for (const int next : around(body)) look_at(next);
-      });
+    if (together_ && resolve_instant(impact, batches, step, joints)) {
+      for (const Meeting& meeting : meetings_) {
+        if (!meeting.impact.any()) continue;
+        had_impact(meeting.impact, step, joints);
+      }
+      continue;
     }
+    resolve(impact, batches, step, joints);
+    had_impact(impact, step, joints);
   }
 
   for (const int body : bodies_) {

@@ -6,6 +6,7 @@
 
 #include "sim/model/state.h"
 #include "sim/solve/iterate/impact_queue.h"
+#include "sim/solve/iterate/instant_impact.h"
 #include "sim/solve/iterate/joint_solver.h"
 #include "sim/solve/iterate/plane_contact_rows.h"
 #include "sim/solve/iterate/plane_pair_cache.h"
@@ -14,12 +15,13 @@ namespace obscura::sim::plane {
 
 /// Impacts: contact points that close within a substep faster than the resting speed. Newton's law with
 /// Coulomb friction, normals and friction of a pair together; pairs in the order of time, each at its own
-/// time and at the poses of that time, until none approaches. A body on joints is struck together with all
-/// bodies of its component.
+/// time and at the poses of that time, until none approaches. What meets in one instant is solved together,
+/// if it is few and the model says so (Model::impacts), else pair after pair. A body on joints is struck
+/// together with all bodies of its component.
 class Impacts {
  public:
-  /// `pairs` is kept by reference.
-  Impacts(const CoreShapes& cores, const Pairs& pairs);
+  /// `pairs` is kept by reference. `together`: what meets in one instant is solved together.
+  Impacts(const CoreShapes& cores, const Pairs& pairs, bool together);
 
   /// Builds, for each body, the list of its awake pairs.
   void list_pairs(const std::vector<Pair>& pairs, const std::vector<Motion>& v);
@@ -75,6 +77,8 @@ class Impacts {
     double gap[2] = {0, 0};               // m
     double n[2] = {0, 0}, t[2] = {0, 0};  // impulses, N s
     Push pushes[2][2] = {};               // along normals and across them, of each touch
+
+    bool any() const { return n[0] != 0 || n[1] != 0; }
   };
   // a pair as it stands at a time, and how its bodies move
   struct PlacedPair {
@@ -82,6 +86,11 @@ class Impacts {
     bool renewed = false;  // by other features than those of the lane
     Motion a, b;
     TouchRow rows[2];
+  };
+  // an impact of several pairs in one instant, and how the bodies of each move before it
+  struct Meeting {
+    Impact impact;
+    Motion a, b;
   };
   // what does not change while the impacts of a step are resolved
   struct Step {
@@ -101,6 +110,7 @@ class Impacts {
   double first_closing(const Pair& pair, const ContactBatch& batches, const PlacedPair& start,
                        const Step& step, int& which) const;
   bool find_meeting(const Pair& pair, const ContactBatch& batches, PlacedPair& at, const Step& step);
+  static bool place_touch(const TouchRow& r, double far, int k, Impact& impact);
   bool find_impact(const Pair& pair, Impact& impact, const ContactBatch& batches, const Step& step);
   int rounds(const Pair& pair) const { return rounds_[pair.a] + (pair.b < 0 ? 0 : rounds_[pair.b]); }
   void look_at(int pair);
@@ -108,6 +118,18 @@ class Impacts {
   void resolve(Impact& impact, const std::vector<ContactBatch>& batches, const Step& step,
                JointSolver<2>& joints);
   bool reach_component(const Pair& pair, double when, const Step& step, const JointSolver<2>& joints);
+  std::pair<double, double> place_at(int body, double when, const Step& step) const;
+  bool meets_at(const Pair& pair, double when, const ContactBatch& batches, const Step& step,
+                Meeting& meeting);
+  bool gather_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step,
+                      const JointSolver<2>& joints);
+  bool resolve_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step,
+                       JointSolver<2>& joints);
+  void had_impact(const Impact& impact, const Step& step, JointSolver<2>& joints);
+  void give(int body, double x, double y, double w) {
+    now_[body].x += x, now_[body].y += y, now_[body].w += w;
+    dv_impacts_[body].x += x, dv_impacts_[body].y += y, dv_impacts_[body].w += w;
+  }
   void compute_responses(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2],
                          JointSolver<2>& joints);
   static double speed(const Push& push, const Motion& a, const Motion& b) {
@@ -151,6 +173,13 @@ class Impacts {
   std::vector<Rows> rows_;
   std::vector<TargetSpeeds> least_;                // of groups
   JointSolver<2>::JointResponse responses_[2][2];  // of normals, and of tangents
+  bool together_ = true;
+  std::vector<char> crowded_;                // of bodies: their impacts go pair after pair in this substep
+  std::vector<int> crowd_;                   // these
+  std::vector<Meeting> meetings_;            // in one instant, the first that was found first
+  std::vector<std::pair<int, int>> closed_;  // their touches: of which meeting, which of its two
+  InstantImpact<2> instant_;
+  std::vector<JointSolver<2>::JointResponse> instant_responses_;  // of its rows
 };
 
 }  // namespace obscura::sim::plane

@@ -13,10 +13,10 @@
 #include "sim/constraint/response.h"
 #include "sim/energy/energy_guard.h"
 #include "sim/math/islands.h"
-#include "sim/solve/cone/cone.h"
 #include "sim/solve/iterate/contact_constraint.h"
 #include "sim/solve/iterate/exact_island.h"
 #include "sim/solve/iterate/impact_queue.h"
+#include "sim/solve/iterate/instant_impact.h"
 #include "sim/solve/iterate/iterative.h"
 #include "sim/solve/iterate/space_batches.h"
 
@@ -131,7 +131,7 @@ class SpaceIterative final : public Iterative<3> {
   void begin_rows(int contacts);
   void set_rows(int k, const ContactConstraint& touch, const Vec<D>& normal, const Vec<D>& arm_a,
                 const Vec<D>& arm_b, const BodyMotion<D>& a, const BodyMotion<D>& b);
-  void couple_rows(Eigen::MatrixXd& K) const;
+  void couple_rows(Eigen::Ref<Eigen::MatrixXd> K) const;
   bool build_impact_rows(double t, double h);
   bool solve_impact(double t, double h, std::vector<double>& work);
   // act(body) for what moves of a side of a touch, and for all that hangs together with it on joints
@@ -229,15 +229,11 @@ class SpaceIterative final : public Iterative<3> {
   ByBody around_;                     // touches
   std::vector<int> meets_, changed_;  // touches of an impact, and of all that it moves
   ExactIsland<D> exact_;
-  Cone<D> cone_;
-  std::vector<ConeBlock<D>> blocks_;
-  std::vector<ConeMode<D>> modes_;
+  InstantImpact<D> instant_;
   std::vector<Row<D>> impact_rows_;
   std::vector<RowResponse<D>> impact_responses_;
   std::vector<JointSolver<D>::JointResponse> tied_responses_;
   bool impact_tied_ = false;  // whether joints answer the impact
-  Eigen::MatrixXd K_;
-  Eigen::VectorXd b_, p_, speeds_;
 };
 
 }  // namespace obscura::sim

@@ -8,26 +8,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
-#include "sim/solve/cone/one_contact.h"
 #include "sim/solve/iterate/closing_time.h"
 #include "sim/solve/iterate/endless_impacts.h"
 #include "sim/solve/iterate/space.h"
-#include "sim/solve/restitution.h"
 
 namespace obscura::sim {
-
-namespace {
-
-constexpr int kMost = 8;               // gaps of one impact
-constexpr int kSweeps = 30;            // over the rows, for the modes that are tried first
-constexpr int kPatience = 40;          // systems: what takes more is left to the iterations
-constexpr double kImpactGain = 1e-13;  // of the energy that moves along the rows: rounding
-constexpr double kLockedPush = 1e-9;   // of what a push moves without joints
-
-}  // namespace
 
 // what meets with a gap at a time, through gaps that are closed: those of its pair alone, if pairs are struck
 // one after another; false where that is not for here
@@ -46,7 +33,7 @@ bool SpaceIterative::gather_impact(int first, double t, double h) {
           if (std::find(meets_.begin(), meets_.end(), other) != meets_.end()) continue;
           const double together = kTogether * bounding_radius_[body];
           if (reach_[other].least(t) > together || instant(other, t, h).now.value > together) continue;
-          few = int(meets_.size()) < kMost;
+          few = int(meets_.size()) < InstantImpact<D>::kMost;
           if (few) meets_.push_back(other);
         }
       });
@@ -72,7 +59,7 @@ void SpaceIterative::set_rows(int k, const ContactConstraint& touch, const Vec<D
   }
 }
 
-void SpaceIterative::couple_rows(Eigen::MatrixXd& K) const {
+void SpaceIterative::couple_rows(Eigen::Ref<Eigen::MatrixXd> K) const {
   for (int i = 0; i < int(impact_rows_.size()); ++i) {
     for (int j = 0; j <= i; ++j)
       K(i, j) = K(j, i) = coupling(impact_rows_[i], impact_responses_[i], impact_rows_[j]);
@@ -83,20 +70,21 @@ void SpaceIterative::couple_rows(Eigen::MatrixXd& K) const {
 // leave it nothing to move
 bool SpaceIterative::build_impact_rows(double t, double h) {
   const int count = int(meets_.size()), rows = D * count, n = int(model_.bodies.size());
-  K_.resize(rows, rows), speeds_.resize(rows), blocks_.assign(count, {});
+  instant_.resize(count);
   begin_rows(count);
   impact_tied_ = false;
   for (int k = 0; k < count; ++k) {
     const ContactConstraint& touch = touches_[meets_[k]];
     const Instant at = instant(meets_[k], t, h);
-    blocks_[k].mu = touch.mu;
+    instant_.blocks[k].mu = touch.mu;
     set_rows(k, touch, at.now.normal, at.now.point - at.a.x, at.now.point - at.b.x, at.a, at.b);
     for (int i = 0; i < D; ++i) {
       const Row<D>& row = impact_rows_[D * k + i];
-      speeds_[D * k + i] =
+      instant_.speeds[D * k + i] =
           row.along.dot(at.a.v - at.b.v) + row.angular_a.dot(at.a.w) - row.angular_b.dot(at.b.w);
-      if (i > 0 && !touch.belt.isZero(0)) speeds_[D * k + i] += row.along.dot(touch.belt);
+      if (i > 0 && !touch.belt.isZero(0)) instant_.speeds[D * k + i] += row.along.dot(touch.belt);
     }
+    if (instant_.speeds[D * k] < -restitution_threshold_) instant_.elasticity[k] = touch.bounce;
     if (joints_.empty()) continue;
     for (const auto& [body, it] : {std::pair(touch.a, &at.a), std::pair(touch.b, &at.b)}) {
       if (body == n) continue;
@@ -106,18 +94,19 @@ bool SpaceIterative::build_impact_rows(double t, double h) {
     }
   }
   if (!impact_tied_) {
-    couple_rows(K_);
+    couple_rows(instant_.K);
     return true;
   }
+  auto& K = instant_.K;
   if (int(tied_responses_.size()) < rows) tied_responses_.resize(rows);
   for (int i = 0; i < rows; ++i) {
     tied_responses_[i].row = impact_rows_[i];
     joints_.compute_response(tied_responses_[i]);
     for (int j = 0; j <= i; ++j)
-      K_(i, j) = K_(j, i) = joints_.response_between(tied_responses_[i], tied_responses_[j]);
+      K(i, j) = K(j, i) = joints_.response_between(tied_responses_[i], tied_responses_[j]);
     const Row<D>& row = impact_rows_[i];
     const double without = response_.inverse_mass(row.a) + response_.inverse_mass(row.b);
-    if (i % D == 0 && !(K_(i, i) > kLockedPush * without)) return false;
+    if (i % D == 0 && !(K(i, i) > InstantImpact<D>::kLockedPush * without)) return false;
   }
   return true;
 }
@@ -125,36 +114,9 @@ bool SpaceIterative::build_impact_rows(double t, double h) {
 // all that meets at a time, at once; false where no impulses were found
 bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work) {
   if (!build_impact_rows(t, h)) return false;
-  const int count = int(meets_.size()), rows = D * count;
-  const Eigen::VectorXd& v = speeds_;
-  b_.resize(rows), p_.resize(rows);
-  const auto rise = [&] {
-    double sum = 0, size = 0;
-    for (int i = 0; i < rows; ++i)
-      sum += p_[i] * (v[i] + 0.5 * K_.row(i).dot(p_)), size = std::max(size, std::abs(p_[i] * v[i]));
-    return size > 0 ? sum / size - kImpactGain : 0;
-  };
-  // with e times `share`; how much more energy there is after it, of the largest part that an impulse moves
-  cone_.patience = kPatience;
-  const auto gain = [&](double share) {
-    b_ = v;
-    for (int k = 0; k < count; ++k) {
-      if (v[D * k] < -restitution_threshold_) b_[D * k] += share * touches_[meets_[k]].bounce * v[D * k];
-    }
-    Vec3 p;
-    if (count == 1 && solve_one_contact(K_, b_, blocks_[0].mu, p)) {
-      p_ = p;
-      return rise();
-    }
-    modes_.assign(count, {}), p_.setZero();
-    cone_.sweep(K_, b_, blocks_, modes_, p_, kSweeps);
-    if (!cone_.solve(K_, b_, blocks_, modes_, p_).found) return std::numeric_limits<double>::infinity();
-    return rise();
-  };
-  double gained = gain(1);
-  if (!std::isfinite(gained)) return false;
-  restitution_share(1, [&](double share) { return share == 1 ? gained : gained = gain(share); });
-  if (!std::isfinite(gained)) return false;
+  const int rows = int(instant_.speeds.size());
+  if (!instant_.solve()) return false;
+  const auto& impulses = instant_.p;
 
   for (const int i : meets_) {
     for (const int side : {touches_[i].a, touches_[i].b}) {
@@ -176,18 +138,19 @@ bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work)
         gives -= sign * (row.along.dot(at.v) + turn.dot(at.w));
       }
       if (impact_tied_) gives += joints_.given(tied_responses_[i]);
-      work[0] += p_[i] * gives;
+      work[0] += impulses[i] * gives;
     }
   }
   for (int i = 0; i < rows; ++i) {
-    touches_[meets_[i / D]].impact_impulse += p_[i] * impact_rows_[i].along;
+    touches_[meets_[i / D]].impact_impulse += impulses[i] * impact_rows_[i].along;
     if (impact_tied_) {
-      joints_.each_push(tied_responses_[i], p_[i], [&](int body, const Vec<D>& dv, const AngularVec<D>& dw) {
-        flown_[body].stance.v += dv, flown_[body].stance.w += dw;
-      });
+      joints_.each_push(tied_responses_[i], impulses[i],
+                        [&](int body, const Vec<D>& dv, const AngularVec<D>& dw) {
+                          flown_[body].stance.v += dv, flown_[body].stance.w += dw;
+                        });
       continue;
     }
-    each_response(impact_rows_[i], impact_responses_[i], p_[i],
+    each_response(impact_rows_[i], impact_responses_[i], impulses[i],
                   [&](int body, const Vec<D>& dv, const AngularVec<D>& spin, double p) {
                     BodyMotion<D>& it = flown_[body].stance;
                     it.v += dv, it.w += p * spin;

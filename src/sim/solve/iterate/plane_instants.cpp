@@ -1,0 +1,226 @@
+// Impacts of several pairs in one instant, all together (sim/solve/iterate/instant_impact.h): those of bodies
+// that hang together by closed gaps or joints. What is more than few goes pair after pair.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sim/solve/iterate/plane_impacts.h"
+#include "sim/solve/iterate/plane_pair_cache.h"
+
+namespace obscura::sim::plane {
+
+namespace {
+
+// what a row does to one of its bodies
+struct StruckSide {
+  int body;
+  double x, y, turn, im, ii;  // of the row; what it moves
+};
+
+}  // namespace
+
+// where a body's centre is at a time
+std::pair<double, double> Impacts::place_at(int body, double when, const Step& step) const {
+  if (when_[body] == when) return {pose_[body].x, pose_[body].y};
+  const Motion &v = now_[body], &gain = step.dv[body];
+  const double time = when - std::max(0.0, when_[body]), half = 0.5 * time / step.pace.h;
+  double x = step.poses[body].x + time * (v.x + half * gain.x),
+         y = step.poses[body].y + time * (v.y + half * gain.y);
+  if (when_[body] >= 0) x += way_[body].x, y += way_[body].y;
+  return {x, y};
+}
+
+// Whether a pair touches at a time, by the features that are nearest then: how, into `meeting`.
+bool Impacts::meets_at(const Pair& pair, double when, const ContactBatch& g, const Step& step,
+                       Meeting& meeting) {
+  const int lane = pair.slot % kLanes;
+  PlacedPair at = placed_at(pair, when, g, step);
+  if (g.calm[lane] < 1e300) {
+    Pose a, b;
+    Motion ignored;
+    move(g.a[lane], when, step, a, ignored), move(g.b[lane], when, step, b, ignored);
+    int words[2];
+    pairs_.features(pair, a, b, words);
+    const auto knows = [&](int word) {
+      return g.words[0][lane] == word || (pair.touches > 1 && g.words[1][lane] == word);
+    };
+    if (!knows(words[0]) || (pair.touches > 1 && !knows(words[1]))) {
+      copy_lane(g, lane, fresh_, lane);
+      pairs_.put(pair, words, fresh_);
+      at = placed_at(pair, when, fresh_, step), at.renewed = true;
+    }
+  }
+  meeting.impact = {}, meeting.a = at.a, meeting.b = at.b;
+  meeting.impact.when = when, meeting.impact.renewed = at.renewed;
+  bool any = false;
+  for (int k = 0; k < pair.touches; ++k) {
+    if (!place_touch(at.rows[k], g.far[lane], k, meeting.impact)) continue;
+    any = true;
+    meeting.impact.speed = std::max(meeting.impact.speed, -normal_speed(at.rows[k], at.a, at.b));
+  }
+  return any;
+}
+
+// What hangs together with an impact through touches that are closed then, into meetings_ and closed_. False
+// where that is one pair alone, or more than few.
+bool Impacts::gather_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step,
+                             const JointSolver<2>& joints) {
+  meetings_.assign(1, {first, {}, {}}), closed_.clear();
+  bool few = true;
+  const auto list = [&](int number) {
+    for (int k = 0; k < 2; ++k)
+      if (meetings_[number].impact.met[k]) closed_.emplace_back(number, k);
+    few = int(closed_.size()) <= InstantImpact<2>::kMost;
+  };
+  list(0);
+  for (int m = 0; few && m < int(meetings_.size()); ++m) {
+    const Pair& pair = step.pairs[meetings_[m].impact.pair];
+    for (const int side : {pair.a, pair.b}) {
+      if (side < 0 || now_[side].im == 0) continue;
+      joints.each_tied(side, [&](int body) {
+        const auto [x, y] = place_at(body, first.when, step);
+        const auto near = [&](const Pair& pair_of_it) {
+          if (pair_of_it.b < 0) return true;
+          const int beside = pair_of_it.a == body ? pair_of_it.b : pair_of_it.a;
+          const auto [px, py] = place_at(beside, first.when, step);
+          const double both = (1 + kTogether) * (bounding_radius_[body] + bounding_radius_[beside]);
+          return (x - px) * (x - px) + (y - py) * (y - py) <= both * both;
+        };
+        for (const int next : around(body)) {
+          if (!few) return;
+          const Pair& other = step.pairs[next];
+          if (!near(other)) continue;
+          if (std::any_of(meetings_.begin(), meetings_.end(),
+                          [&](const Meeting& known) { return known.impact.pair == next; }))
+            continue;
+          Meeting meeting;
+          if (!meets_at(other, first.when, batches[other.slot / kLanes], step, meeting)) continue;
+          meeting.impact.pair = next;
+          meetings_.push_back(meeting);
+          list(int(meetings_.size()) - 1);
+        }
+      });
+    }
+  }
+  if (!few || meetings_.size() == 1) return false;
+  Pose ignored;
+  const Pair& pair = step.pairs[first.pair];
+  move(pair.a, first.when, step, ignored, meetings_[0].a);
+  move(pair.b >= 0 ? pair.b : int(now_.size()) - 1, first.when, step, ignored, meetings_[0].b);
+  return true;
+}
+
+// all that meets together; false where it goes pair after pair
+bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step,
+                              JointSolver<2>& joints) {
+  const Pair& its = step.pairs[first.pair];
+  const auto moves = [&](int body) { return body >= 0 && now_[body].im > 0; };
+  for (const int body : {its.a, its.b})
+    if (moves(body) && crowded_[body] != 0) return false;
+  if (!gather_instant(first, batches, step, joints)) {
+    // so many touch there that what meets them later goes pair after pair, too
+    if (int(closed_.size()) > InstantImpact<2>::kMost)
+      for (const int body : {its.a, its.b})
+        if (moves(body)) crowded_[body] = 1, crowd_.push_back(body);
+    return false;
+  }
+  const int count = int(closed_.size()), rows = 2 * count, room = int(now_.size()) - 1;
+  const auto pair_of = [&](int k) -> const Pair& {
+    return step.pairs[meetings_[closed_[k].first].impact.pair];
+  };
+  const auto push_of = [&](int row) -> const Push& {
+    const auto& [number, k] = closed_[row / 2];
+    return meetings_[number].impact.pushes[row % 2][k];
+  };
+  const auto sides = [&](int row, StruckSide(&of)[2]) {
+    const Pair& pair = pair_of(row / 2);
+    const ContactBatch& g = batches[pair.slot / kLanes];
+    const int lane = pair.slot % kLanes, b = pair.b >= 0 ? pair.b : room;
+    const Push& push = push_of(row);
+    of[0] = {pair.a, push.x, push.y, push.a, now_[pair.a].im, g.iia[lane]};
+    of[1] = {b, -push.x, -push.y, -push.b, now_[b].im, g.iib[lane]};
+  };
+  const auto tied_to = [&](int body) { return body >= 0 && joints.component(body) >= 0; };
+  const bool tied = !joints.empty() && std::any_of(meetings_.begin(), meetings_.end(), [&](const Meeting& m) {
+    const Pair& pair = step.pairs[m.impact.pair];
+    return tied_to(pair.a) || tied_to(pair.b);
+  });
+
+  instant_.resize(count);
+  auto& K = instant_.K;
+  if (tied && instant_responses_.empty()) {
+    instant_responses_.resize(InstantImpact<2>::kMostRows);
+    for (JointSolver<2>::JointResponse& response : instant_responses_) joints.reserve(response);
+  }
+  for (int i = 0; i < rows; ++i) {
+    const int k = i / 2;
+    const Pair& pair = pair_of(k);
+    const ContactBatch& g = batches[pair.slot / kLanes];
+    const int lane = pair.slot % kLanes;
+    const Meeting& meeting = meetings_[closed_[k].first];
+    const Push& push = push_of(i);
+    instant_.speeds[i] = speed(push, meeting.a, meeting.b) + (i % 2 != 0 && g.belts ? g.belt[lane] : 0);
+    instant_.blocks[k].mu = pair.material.friction;
+    if (i % 2 == 0 && instant_.speeds[i] < g.impact_speed[lane])
+      instant_.elasticity[k] = pair.material.elasticity;
+    StruckSide own[2], others[2];
+    sides(i, own);
+    if (tied) {
+      Row<2>& row = instant_responses_[i].row;
+      row.a = pair.a, row.b = pair.b;
+      row.along = {push.x, push.y}, row.angular_a[0] = push.a, row.angular_b[0] = push.b;
+      joints.compute_response(instant_responses_[i]);
+    }
+    for (int j = 0; j <= i; ++j) {
+      double sum = 0;
+      if (tied) {
+        sum = joints.response_between(instant_responses_[i], instant_responses_[j]);
+      } else {
+        sides(j, others);
+        for (const StruckSide& p : own)
+          for (const StruckSide& q : others)
+            if (p.body == q.body) sum += p.im * (p.x * q.x + p.y * q.y) + p.ii * (p.turn * q.turn);
+      }
+      K(i, j) = K(j, i) = sum;
+    }
+    // joints may leave it nothing to move
+    if (i % 2 == 0 && !(K(i, i) > InstantImpact<2>::kLockedPush * (own[0].im + own[1].im))) return false;
+  }
+  if (!instant_.solve()) return false;
+
+  for (int k = 0; k < count; ++k) {
+    const auto& [number, touch] = closed_[k];
+    meetings_[number].impact.n[touch] += instant_.p[2 * k];
+    meetings_[number].impact.t[touch] += instant_.p[2 * k + 1];
+  }
+  for (const Meeting& meeting : meetings_) {
+    if (!meeting.impact.any()) continue;
+    const Pair& pair = step.pairs[meeting.impact.pair];
+    reach(pair.a, first.when, step), reach(pair.b >= 0 ? pair.b : room, first.when, step);
+    if (tied) reach_component(pair, first.when, step, joints);
+  }
+  for (int i = 0; i < rows; ++i) {
+    const double l = instant_.p[i];
+    if (l == 0) continue;
+    const Pair& pair = pair_of(i / 2);
+    const ContactBatch& g = batches[pair.slot / kLanes];
+    const Meeting& meeting = meetings_[closed_[i / 2].first];
+    StruckSide own[2];
+    sides(i, own);
+    // the work of a kinematic body: impulse times its speed
+    const Motion none{}, &ua = own[0].im > 0 ? none : meeting.a, &ub = own[1].im > 0 ? none : meeting.b;
+    drive_work_ -= l * (speed(push_of(i), ua, ub) + (i % 2 != 0 ? g.belt[pair.slot % kLanes] : 0));
+    if (tied) {
+      drive_work_ += l * joints.given(instant_responses_[i]);
+      joints.each_push(instant_responses_[i], l, [&](int body, const Vec<2>& v, const AngularVec<2>& w) {
+        give(body, v[0], v[1], w[0]);
+      });
+      continue;
+    }
+    for (const StruckSide& p : own) give(p.body, p.x * (p.im * l), p.y * (p.im * l), p.ii * (p.turn * l));
+  }
+  return true;
+}
+
+}  // namespace obscura::sim::plane
