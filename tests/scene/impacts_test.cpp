@@ -294,5 +294,46 @@ TEST(Impacts, OfOneInstantAreSolvedTogetherByEverySolver) {
   }
 }
 
+// A ball that only touches the block that is struck under it: nothing presses them together, so that nothing
+// rubs.
+TEST(Impacts, WhatDoesNotPressDoesNotRub) {
+  for (const int dimension : {2, 3}) {
+    for (const Manner& manner : kManners) {
+      SCOPED_TRACE(fmt::format("{}D by {}", dimension, manner.name));
+      const std::string size = dimension == 2 ? "[0.6, 0.2]" : "[0.6, 0.2, 0.4]",
+                        more = "elasticity = 1\nfriction = 0.5\n";
+      const TextRun run(empty_room(manner, dimension) +
+                        fmt::format("[[box]]\nname = \"block\"\nsize = {}\nmass = 1\nposition = [0, 0{}]\n{}",
+                                    size, dimension == 2 ? "" : ", 0", more) +
+                        ball_at(dimension, "a", 1, 0, 0.2, 0, 0, more) +
+                        ball_at(dimension, "b", 1, 0.43, 0, -1, 0, more));
+      const sim::Snapshot end = run.at(0.05);
+      EXPECT_LT(end.bodies[number_of(run, "a")].velocity.norm(), 1e-12);
+      EXPECT_LT(end.bodies[number_of(run, "a")].spin.norm(), 1e-12);
+      EXPECT_NEAR(end.bodies[number_of(run, "block")].velocity.x(), -1, 1e-12);
+    }
+  }
+}
+
+// A ball that rests from the start is struck within the first step.
+TEST(Impacts, WhatBeginsAtRestIsNoWallForWhatStrikesItAtOnce) {
+  for (const int dimension : {2, 3}) {
+    for (const Manner& manner : kManners) {
+      for (const int rate : {60, 600}) {
+        SCOPED_TRACE(fmt::format("{}D by {} at {}", dimension, manner.name, rate));
+        const std::string more = "elasticity = 1\nfriction = 0\n";
+        const TextRun run(fmt::format("duration = 1\n[room]\nsize = {}\ngravity = {}\n{}\nrate = {}\n",
+                                      dimension == 2 ? "[8, 3]" : "[8, 3, 8]",
+                                      dimension == 2 ? "[0, -1]" : "[0, -1, 0]", manner.keys, rate) +
+                          ball_at(dimension, "a", 1, 2, 0.1, 0, 0, more) +
+                          ball_at(dimension, "b", 1, 1.799, 0.1, 2, 0, more));
+        const sim::Snapshot end = run.at(0.05);
+        EXPECT_NEAR(end.bodies[number_of(run, "a")].velocity.x(), 2, 1e-9);
+        EXPECT_NEAR(end.bodies[number_of(run, "b")].velocity.x(), 0, 1e-9);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

@@ -67,7 +67,11 @@ double Cone<D>::check(const ConeBlock<D>& block, const ConeMode<D>& mode, int ro
       see(std::fabs(w), ModeKind::stick);
       see(Eigen::Map<const Tangent<D>>(w_.data() + row + 1).norm(), ModeKind::stick);
       see(-f, ModeKind::open);
-      if (f > 0) see(pull - block.mu * f, ModeKind::slide);
+      // what does not press has no friction
+      if (f > 0)
+        see(pull - block.mu * f, ModeKind::slide);
+      else
+        see(pull, ModeKind::open);
       if (better.kind == ModeKind::slide) better.along = -ft / pull;
       break;
     }

@@ -96,7 +96,10 @@ bool PlaneIterative::find_contacts(StepPart<D> step) {
 void PlaneIterative::update_sleep(StepPart<D> step) {
   if (step.state.step > 0) return;
   place_contacts(step.state, true);
-  if (sleep_.at_start(step.state, step.state.contacts)) stop_sleeping(step.state);
+  if (!sleep_.at_start(step.state, step.state.contacts)) return;
+  stop_sleeping(step.state);
+  // what begins at rest may be struck in the first step
+  if (wake_struck(step.state, step.h)) update_pairs(step.state, true);
 }
 
 double PlaneIterative::closing_rate(double h) const {

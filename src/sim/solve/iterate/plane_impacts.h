@@ -174,6 +174,7 @@ class Impacts {
   std::vector<TargetSpeeds> least_;                // of groups
   JointSolver<2>::JointResponse responses_[2][2];  // of normals, and of tangents
   bool together_ = true;
+  int instants_ = 0;                         // of this substep
   std::vector<char> crowded_;                // of bodies: their impacts go pair after pair in this substep
   std::vector<int> crowd_;                   // these
   std::vector<Meeting> meetings_;            // in one instant, the first that was found first

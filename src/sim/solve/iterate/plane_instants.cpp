@@ -12,6 +12,8 @@ namespace obscura::sim::plane {
 
 namespace {
 
+constexpr int kMostInstants = 2000;  // of a substep: what is squeezed has no end of them
+
 // what a row does to one of its bodies
 struct StruckSide {
   int body;
@@ -114,6 +116,7 @@ bool Impacts::gather_instant(const Impact& first, const std::vector<ContactBatch
 // all that meets together; false where it goes pair after pair
 bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step,
                               JointSolver<2>& joints) {
+  if (instants_ == kMostInstants) return false;
   const Pair& its = step.pairs[first.pair];
   const auto moves = [&](int body) { return body >= 0 && now_[body].im > 0; };
   for (const int body : {its.a, its.b})
@@ -187,6 +190,7 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     // joints may leave it nothing to move
     if (i % 2 == 0 && !(K(i, i) > InstantImpact<2>::kLockedPush * (own[0].im + own[1].im))) return false;
   }
+  ++instants_;
   if (!instant_.solve()) return false;
 
   for (int k = 0; k < count; ++k) {

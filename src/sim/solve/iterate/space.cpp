@@ -56,7 +56,11 @@ void SpaceIterative::update_sleep(StepPart<D> step) {
     near_.clear();
     for (const ContactConstraint& touch : touches_) near_.push_back(contact(touch, step.h));
     changed = sleep_.wake(state, near_, step.h, step.h) || changed;
-    if (!changed && state.step == 0 && sleep_.at_start(state, near_)) state.contacts = near_, changed = true;
+    if (!changed && state.step == 0 && sleep_.at_start(state, near_)) {
+      state.contacts = near_, changed = true;
+      // what begins at rest may be struck in the first step
+      sleep_.wake(state, near_, step.h, step.h);
+    }
   }
   if (changed) prepare(state, step.t, step.h), find(step);
 }
