@@ -132,6 +132,35 @@ double Impacts::first_closing(const Pair& pair, const ContactBatch& g, const Pla
   return first;
 }
 
+// the features of a pair that are nearest at a time
+void Impacts::features_at(const Pair& pair, double when, const Step& step, int (&words)[2]) const {
+  Pose a, b;
+  Motion ignored;
+  move(pair.a, when, step, a, ignored),
+      move(pair.b >= 0 ? pair.b : int(now_.size()) - 1, when, step, b, ignored);
+  pairs_.features(pair, a, b, words);
+}
+
+// whether the k-th feature of its lane is among them
+bool Impacts::still_nearest(const Pair& pair, const int (&words)[2], const ContactBatch& by, int k) {
+  const int known = by.words[k][pair.slot % kLanes];
+  return known == words[0] || (pair.touches > 1 && known == words[1]);
+}
+
+// whether others are nearer than those of its lane
+bool Impacts::outdated(const Pair& pair, const int (&words)[2], const ContactBatch& by) {
+  return !still_nearest(pair, words, by, 0) || (pair.touches > 1 && !still_nearest(pair, words, by, 1));
+}
+
+// a pair at a time by these features, in the lane that fresh_ has of it
+Impacts::PlacedPair Impacts::placed_renewed(const Pair& pair, const int (&words)[2], double when,
+                                            const Step& step) {
+  pairs_.put(pair, words, fresh_);
+  PlacedPair at = placed_at(pair, when, fresh_, step);
+  at.renewed = true;
+  return at;
+}
+
 // Moves `at`, the placed pair, to the time of its impact; false if it has none. Takes the features of its
 // lane. If other features are nearest by then, conservative advancement: goes on by a time in which the pair
 // surely does not meet, takes the nearest features there, and again until these are still the nearest when
@@ -140,28 +169,16 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& 
   const int lane = pair.slot % kLanes, a = g.a[lane], b = g.b[lane];
   int which, words[2];
   double when = first_closing(pair, g, at, step, which);
-  const auto find_features = [&](double time) {
-    Pose pose_a, pose_b;
-    Motion v_a, v_b;
-    move(a, time, step, pose_a, v_a), move(b, time, step, pose_b, v_b);
-    pairs_.features(pair, pose_a, pose_b, words);
-  };
-  const auto knows = [&](const ContactBatch& by, int k) {
-    return by.words[k][lane] == words[0] || (pair.touches > 1 && by.words[k][lane] == words[1]);
-  };
-  const auto place_renewed = [&](double time) {
-    pairs_.put(pair, words, fresh_);
-    at = placed_at(pair, time, fresh_, step);
-    at.renewed = true;
-  };
+  const auto find_features = [&](double time) { features_at(pair, time, step, words); };
+  const auto place_renewed = [&](double time) { at = placed_renewed(pair, words, time, step); };
   // whether that is all there is to find
   const auto found = [&](const ContactBatch& by) {
     // round things have no other features
     if (g.calm[lane] < 1e300) {
       find_features(std::min(when, step.pace.h));
-      if (!knows(by, 0) || (pair.touches > 1 && !knows(by, 1))) {
+      if (outdated(pair, words, by)) {
         if (&by != &fresh_) copy_lane(by, lane, fresh_, lane);
-        if (when == kNeverCloses || !knows(by, which)) return false;
+        if (when == kNeverCloses || !still_nearest(pair, words, by, which)) return false;
         place_renewed(when);
         return true;
       }

@@ -109,6 +109,10 @@ class Impacts {
   bool may_meet(const Pair& pair, const ContactBatch& batches, const Step& step) const;
   double first_closing(const Pair& pair, const ContactBatch& batches, const PlacedPair& start,
                        const Step& step, int& which) const;
+  void features_at(const Pair& pair, double when, const Step& step, int (&words)[2]) const;
+  static bool still_nearest(const Pair& pair, const int (&words)[2], const ContactBatch& by, int k);
+  static bool outdated(const Pair& pair, const int (&words)[2], const ContactBatch& by);
+  PlacedPair placed_renewed(const Pair& pair, const int (&words)[2], double when, const Step& step);
   bool find_meeting(const Pair& pair, const ContactBatch& batches, PlacedPair& at, const Step& step);
   static bool place_touch(const TouchRow& r, double far, int k, Impact& impact);
   bool find_impact(const Pair& pair, Impact& impact, const ContactBatch& batches, const Step& step);

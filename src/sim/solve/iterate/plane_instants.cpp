@@ -39,18 +39,11 @@ bool Impacts::meets_at(const Pair& pair, double when, const ContactBatch& g, con
   const int lane = pair.slot % kLanes;
   PlacedPair at = placed_at(pair, when, g, step);
   if (g.calm[lane] < 1e300) {
-    Pose a, b;
-    Motion ignored;
-    move(g.a[lane], when, step, a, ignored), move(g.b[lane], when, step, b, ignored);
     int words[2];
-    pairs_.features(pair, a, b, words);
-    const auto knows = [&](int word) {
-      return g.words[0][lane] == word || (pair.touches > 1 && g.words[1][lane] == word);
-    };
-    if (!knows(words[0]) || (pair.touches > 1 && !knows(words[1]))) {
+    features_at(pair, when, step, words);
+    if (outdated(pair, words, g)) {
       copy_lane(g, lane, fresh_, lane);
-      pairs_.put(pair, words, fresh_);
-      at = placed_at(pair, when, fresh_, step), at.renewed = true;
+      at = placed_renewed(pair, words, when, step);
     }
   }
   meeting.impact = {}, meeting.a = at.a, meeting.b = at.b;
