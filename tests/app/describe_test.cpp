@@ -111,6 +111,57 @@ start = "cut"
   EXPECT_THAT(run.out, Not(HasSubstr("breaks")));
 }
 
+// A body that turns on the spot is not said to stand still; about its middle axis it turns over.
+TEST_F(Describe, TellsOfWhatTurns) {
+  scene(
+      "duration = 2\n[room]\nsize = [4, 3]\nwalls = \"none\"\ngravity = [0, 0]\n[[box]]\nname = \"wheel\"\n"
+      "size = [0.6, 0.4]\nposition = [2, 1.5]\nspin = 90\n");
+  const Outcome run = obscura("describe scene.toml");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("the wheel is at (2, 1.5) m and turns at 1.57 rad/s."));
+
+  scene(
+      "duration = 12\n[room]\nsize = [3, 3, 3]\nwalls = \"none\"\ngravity = [0, 0, 0]\n[[box]]\n"
+      "name = \"slab\"\nsize = [1, 0.4, 0.1]\nposition = [0, 1.5, 0]\nspin = [0.5, 300, 0.5]\n");
+  const Outcome over = obscura("describe scene.toml");
+  ASSERT_EQ(over.exit, 0) << over.err;
+  EXPECT_THAT(over.out, testing::ContainsRegex("The slab turns over [0-9]+ times, first at "));
+  EXPECT_THAT(over.out, Not(HasSubstr("does not move")));
+}
+
+// What moves bodies: a hand, an explosion. Boxes that cannot turn are boxes in every pose.
+TEST_F(Describe, TellsOfHandsAndExplosions) {
+  scene(R"(duration = 2
+[room]
+size = [4, 3]
+[physics]
+rotation = false
+[[box]]
+name = "crate"
+size = [0.4, 0.4]
+position = [1, 0.2]
+[[box]]
+size = [0.4, 0.2]
+position = [3, 0.5]
+angle = 30
+arrows = ["velocity"]
+[[mouse]]
+path = [[0.5, 1, 0.2], [1.5, 1.5, 1]]
+[[explosion]]
+center = [2, 0.1]
+strength = 1
+start = 0.25
+duration = 0.1
+)");
+  const Outcome run = obscura("describe scene.toml");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("In the plane there are 2 boxes;"));
+  EXPECT_THAT(run.out, HasSubstr("Arrows show velocity of "));
+  EXPECT_THAT(run.out, HasSubstr("At 0.25 s there is an explosion at (2, 0.1) m, which lasts 0.1 s."));
+  EXPECT_THAT(run.out, testing::ContainsRegex(
+                           "From 0\\.5[0-9]* s to 1\\.[0-9]* s a hand's spring pulls the crate\\."));
+}
+
 // sqrt(2 g h) = 4.429 m/s, half of that after it: not the speed with which the step began; a millionth as
 // large too
 TEST_F(Describe, TellsTheSpeedOfAnImpactInRoomsOfEverySize) {

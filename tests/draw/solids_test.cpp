@@ -393,7 +393,51 @@ TEST(Arrows, OfFilmsEndBelowTheTitle) {
   EXPECT_GT(free, 0.5);
   const auto [near, reaches] = scale(4.5 - 1.6 * free);
   EXPECT_NEAR(near, reaches, 1e-9);
-  EXPECT_EQ(scale(4.4).first, free) << "its head is at the edge";
+  EXPECT_NEAR(scale(4.4).first, 0.15 * free, 1e-9) << "no shorter than that: it is cut";
+}
+
+// The weight of what lies on the floor is as long as the force that bears it, and both are seen whole. What
+// may leave the picture does not shorten the others.
+TEST(Arrows, OfFilmsAreWholeAboveWalls) {
+  const auto scale = [](double height, bool walls) {
+    Made made = room(8, 4.5);
+    if (!walls) made.cast.walls.clear();
+    made.body(ShapeKind::ball, {4, height, 0}, 0.1);
+    made.now.bodies[0].velocity = {0, -2, 0};
+    Marks marks;
+    marks.vectors.push_back({.quantity = Quantity::velocity, .body = 0, .label = ""});
+    RunAhead ahead;
+    ahead.samples.push_back({made.now, 0});
+    ahead.between.push_back(made.now);
+    ahead.between[0].bodies[0].position.y() = 0.2;
+    const Illustrator artist = made.depictor();
+    const Annotations all(marks, artist, std::move(ahead), {}, 60, 1080);
+    List list;
+    all.draw(0, artist.projection(0, made.now), made.now, 0, list);
+    made.now.bodies[0].position.y() = 0.2;
+    const Projection view = artist.projection(0, made.now);
+    const double tip = view.page({4, 0.2 - 2 * all.scales().velocity, 0}).y();
+    return std::pair(all.scales().velocity, view.window().y + view.window().height - tip);
+  };
+  EXPECT_GT(scale(2, true).second, 0) << "the head is in the picture";
+  EXPECT_LT(scale(2, true).first, 0.5 * scale(2, false).first) << "without walls it may leave it";
+}
+
+TEST(Arrows, ThatWouldBeLongerAreBroken) {
+  const Rect window{0, 0, 400, 300};
+  for (const auto& [tip, cut] : {std::pair(Point(390, 100), false), std::pair(Point(420, 100), true),
+                                 std::pair(Point(100, -500), true)}) {
+    std::vector<Arrow> arrows;
+    offer({100, 100}, tip, window, 1, arrows);
+    ASSERT_EQ(arrows.size(), 1u);
+    EXPECT_EQ(arrows[0].cut, cut) << tip.transpose();
+    List list;
+    draw_arrows(arrows, 1, {255, 255, 255}, {0, 0, 0}, list);
+    const auto strokes = std::count_if(list.strokes.begin(), list.strokes.end(), [&](const Stroke& it) {
+      return list.nodes[std::size_t(it.begin)].color.r == 0;
+    });
+    EXPECT_EQ(strokes, cut ? 3 : 1) << "the shaft, and two across it";
+  }
 }
 
 /// Numbers of a ruler are all there and on the page; its name takes the place of none.

@@ -12,11 +12,14 @@
 #include "app/run/description.h"
 #include "app/run/plots.h"
 #include "app/run/run_marks.h"
+#include "app/run/shown.h"
 #include "app/run/simulation.h"
+#include "app/run/telling.h"
 #include "app/run/trouble.h"
 #include "app/run/variation.h"
 #include "draw/compose/annotate.h"
 #include "draw/compose/annotations.h"
+#include "draw/compose/arrow_scales.h"
 #include "draw/compose/depict.h"
 #include "draw/page/sheet.h"
 #include "draw/picture/formula.h"
@@ -248,7 +251,14 @@ Page FigureBuilder::page() const {
   } else {
     window = first.layout().window, scale = first.layout().scale;
   }
-  const draw::Scales scales = draw::scales(figure, panels_.front().cast, moments, window, scale);
+  std::vector<draw::SeenInstant> seen;
+  for (const Cell& cell : cells) {
+    const draw::Illustrator artist = depictor(cell, each);
+    seen.push_back({&cell.panel->now, artist.projection(0, cell.panel->now)});
+  }
+  const draw::Scales scales =
+      draw::kept_whole(figure, panels_.front().cast, seen, draw::Lettering{}.arrow,
+                       draw::scales(figure, panels_.front().cast, moments, window, scale));
 
   Page page;
   draw::List all;
@@ -323,11 +333,25 @@ Page FigureBuilder::page() const {
 
 std::string FigureBuilder::text() const {
   std::string all;
-  for (std::size_t i = 0; i < panels_.size(); ++i) {
+  const Panel& front = panels_.front();
+  const draw::Figure& figure = front.scene.figure;
+  const auto add = [&](const std::string& sentence) { all += (all.empty() ? "" : " ") + sentence; };
+  if (!figure.room && !front.scene.look.title.empty()) add(telling::headline(front.scene.look));
+  for (std::size_t i = 0; figure.room && i < panels_.size(); ++i) {
     const Panel& panel = panels_[i];
     if (i > 0) all += " ";
     if (panels_.size() > 1) all += fmt::format("({}) ", char('a' + i % 26));
     all += i == 0 ? picture_text(panel.scene, panel.cast, panel.now) : instant_text(panel.cast, panel.now);
+  }
+  if (figure.room)
+    for (const std::string& sentence : shown_marks(figure, front.scene.look, front.cast)) add(sentence);
+  for (const draw::Figure::Plot& plot : figure.plots) {
+    add(shown_plot(plot, front.cast, plot.over.substr(0, plot.over.find('=')), !plot.reference.empty()));
+  }
+  if (variants_.size() > 1) {
+    std::vector<std::string> names;
+    for (const auto& variant : variants_) names.push_back(draw::formula_in_letters(variant.name));
+    add(fmt::format("Its lines are of {} runs: {}.", variants_.size(), telling::together(names)));
   }
   return all;
 }

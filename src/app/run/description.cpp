@@ -17,6 +17,7 @@
 #include "app/console/exit.h"
 #include "app/console/interrupt.h"
 #include "app/run/compared.h"
+#include "app/run/shown.h"
 #include "app/run/telling.h"
 #include "app/run/trouble.h"
 #include "draw/page/measure.h"
@@ -34,34 +35,7 @@ constexpr std::size_t kToldSingly = 6;        // bodies, impacts: told one by on
 constexpr std::size_t kMostHappenings = 300;  // impacts that are listed
 constexpr double kSoft = 0.02;                // of sqrt(g L): slower is no impact
 constexpr double kSame = 1e-3;                // of the energy: it has not changed
-
-// what arrows and plots of a film show
-std::vector<std::string> shown(const scene::Film& film, const sim::SceneInfo& cast) {
-  std::vector<std::pair<int, std::vector<std::string>>> bodies;
-  for (const draw::Marks::Vector& each : film.marks.vectors) {
-    if (each.body < 0) continue;
-    auto of =
-        std::find_if(bodies.begin(), bodies.end(), [&](const auto& it) { return it.first == each.body; });
-    if (of == bodies.end()) of = bodies.insert(of, {each.body, {}});
-    std::string what = "position";
-    for (const std::string& name : draw::arrows())
-      if (draw::measure(name)->arrow == each.quantity) what = draw::in_words(name);
-    if (std::find(of->second.begin(), of->second.end(), what) == of->second.end()) of->second.push_back(what);
-  }
-  std::vector<std::string> all;
-  for (const auto& [body, quantities] : bodies)
-    if (all.size() < kToldSingly)
-      all.push_back(fmt::format("Arrows show {} of {}.", together(quantities), called(cast, body)));
-  for (const draw::Chart& chart : film.charts) {
-    std::vector<std::string> quantities, of;
-    for (const std::string& each : chart.quantities) quantities.push_back(draw::in_words(each));
-    for (const int body : chart.bodies) of.push_back(called(cast, body));
-    all.push_back(fmt::format("A plot shows {}{} over {}.", together(quantities),
-                              of.empty() ? "" : " of " + together(of),
-                              chart.against.empty() ? "time" : draw::in_words(chart.against)));
-  }
-  return all;
-}
+constexpr double kTurnedOver = 0.5;           // cosine to the axis of the start: it points the other way
 
 struct Impact {
   double time = 0, speed = 0;  // s, m/s: along the normal, before
@@ -88,7 +62,10 @@ class Account {
     double fastest = 0, when_fastest = 0, highest = -1e300, when_highest = 0;
   };
   using Pair = std::tuple<int, int, int>;
+  void follow_turns(const sim::Snapshot& now);
+  void follow_hands(const sim::Snapshot& now);
   std::vector<std::string> beginning() const;
+  std::vector<std::pair<double, std::string>> causes() const;
   std::vector<std::string> events() const;
   std::vector<std::string> extremes() const;
   std::vector<std::string> ending() const;
@@ -129,6 +106,20 @@ class Account {
   std::set<int> parted_;                                            // of them those that conditions let go
   std::vector<std::pair<std::string, std::vector<double>>> marks_;  // by their names, in the order of time
   std::set<Pair> touching_;
+  struct Grip {
+    int body = -1;
+    double begin = 0, end = 0;  // s
+  };
+  std::vector<Grip> grips_;  // of the mouse's springs, in the order of time
+  std::vector<int> held_;    // mice: which of them it is in; -1: none
+  // A body's axis about which it turned at the start, and which way that points now. Free bodies that turn
+  // about their middle axis turn over.
+  struct Turning {
+    sim::Vec3 axis = sim::Vec3::Zero();  // in the body's frame, unit; zero: it does not turn
+    bool over = false, free = true;      // free: it has touched nothing
+    std::vector<double> times{};         // s, when it has turned over
+  };
+  std::vector<Turning> turning_;
 };
 
 void Account::read(const sim::Snapshot& now) {
@@ -184,6 +175,8 @@ void Account::read(const sim::Snapshot& now) {
     else if (!rest_[i])
       rest_[i] = now.time;
   }
+  follow_turns(now);
+  follow_hands(now);
   for (std::size_t i = 0; last_ && i < now.joints.size(); ++i)
     if (now.joints[i].broken != last_->joints[i].broken)
       (now.joints[i].broken ? broken_ : made_).emplace_back(now.time, int(i));
@@ -193,6 +186,62 @@ void Account::read(const sim::Snapshot& now) {
   if (e.total() < least_.energy) least_ = {e.total(), now.time};
   if (e.total() > greatest_.energy) greatest_ = {e.total(), now.time};
   most_energy_ = std::max({most_energy_, std::abs(e.total()), e.kinetic, std::abs(e.potential())});
+}
+
+void Account::follow_turns(const sim::Snapshot& now) {
+  if (cast_.dimension == 2) return;
+  turning_.resize(bodies_.size());
+  for (const sim::Snapshot::Contact& each : now.contacts)
+    for (const int body : {each.body, each.other})
+      if (body >= 0) turning_[std::size_t(body)].free = false;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const sim::Snapshot::Body& it = now.bodies[i];
+    Turning& its = turning_[i];
+    if (!turns(it.spin)) continue;
+    const sim::Vec3 way = it.orientation.conjugate() * it.spin.normalized();
+    if (!last_) its.axis = way;
+    const double along = its.axis.dot(way);
+    if (along > -kTurnedOver && along < kTurnedOver) continue;
+    if (its.over != (along < 0)) its.times.push_back(now.time);
+    its.over = along < 0;
+  }
+}
+
+void Account::follow_hands(const sim::Snapshot& now) {
+  held_.resize(now.mice.size(), -1);
+  for (std::size_t i = 0; i < now.mice.size(); ++i) {
+    const sim::Snapshot::Mouse& it = now.mice[i];
+    const int body = it.pressed ? it.body : -1;
+    if (held_[i] >= 0 && grips_[std::size_t(held_[i])].body != body) held_[i] = -1;
+    if (body < 0) continue;
+    if (held_[i] < 0) held_[i] = int(grips_.size()), grips_.push_back({body, now.time, now.time});
+    grips_[std::size_t(held_[i])].end = now.time;
+  }
+}
+
+// what is done to bodies: hands that pull, explosions that begin
+std::vector<std::pair<double, std::string>> Account::causes() const {
+  std::vector<std::pair<double, std::string>> told;
+  for (const Grip& each : grips_) {
+    if (told.size() >= kToldSingly) break;
+    told.emplace_back(each.begin, fmt::format("From {} to {} a hand's spring pulls {}.", when(each.begin),
+                                              when(each.end), called(cast_, each.body)));
+  }
+  if (scene_.trajectory) return told;
+  std::visit(
+      [&](const auto& world) {
+        for (const auto& each : world.model.explosions) {
+          const double start = sim::value(each.start);
+          if (start > last_->time || told.size() >= 2 * kToldSingly) continue;
+          sim::Vec3 center = sim::Vec3::Zero();
+          center.head(each.center.size()) = each.center;
+          told.emplace_back(start,
+                            fmt::format("At {} there is an explosion at {}, which lasts {}.", when(start),
+                                        whereabouts(center, cast_), when(sim::value(each.duration))));
+        }
+      },
+      scene_.world);
+  return told;
 }
 
 void Account::heed(const std::vector<sim::RunEvent>& events) {
@@ -221,27 +270,43 @@ std::vector<std::string> Account::beginning() const {
                             g > 0          ? fmt::format("; gravity is {} m/s²", numeral(g))
                             : cast_.forces ? ", without the room's gravity but with forces of the scene"
                                            : "; there is no gravity"));
-  for (std::string& sentence : shown(scene_.film, cast_)) all.push_back(std::move(sentence));
+  for (std::string& sentence : shown_marks(scene_.film.marks, scene_.look, cast_))
+    all.push_back(std::move(sentence));
+  for (const draw::Chart& chart : scene_.film.charts) all.push_back(shown_plot(chart, cast_));
   const std::vector<int> bodies = moving(cast_);
   if (bodies.size() > kToldSingly) {
-    std::size_t resting = 0;
-    for (const int body : bodies) resting += stands(first_->bodies[std::size_t(body)].velocity, cast_);
-    if (resting == bodies.size()) all.emplace_back("All start without velocity.");
+    std::size_t resting = 0, turning = 0;
+    for (const int body : bodies) {
+      const sim::Snapshot::Body& it = first_->bodies[std::size_t(body)];
+      resting += stands(it.velocity, cast_), turning += turns(it.spin);
+    }
+    if (resting == bodies.size())
+      all.emplace_back(turning == 0 ? "All start without velocity." : "All start in place; some turn.");
     return all;
   }
   for (const int body : bodies) {
     const sim::Snapshot::Body& it = first_->bodies[std::size_t(body)];
-    all.push_back(capital(
-        fmt::format("{} starts at {}, {}.", called(cast_, body), whereabouts(it.position, cast_),
-                    !stands(it.velocity, cast_) ? motion(it.velocity, cast_)
-                    : it.spin.norm() > 1e-9     ? fmt::format("turning at {} rad/s", numeral(it.spin.norm()))
-                                                : std::string("at rest"))));
+    all.push_back(
+        capital(fmt::format("{} starts at {}, {}.", called(cast_, body), whereabouts(it.position, cast_),
+                            !stands(it.velocity, cast_) ? motion(it.velocity, cast_)
+                            : turns(it.spin) ? fmt::format("turning at {} rad/s", numeral(it.spin.norm()))
+                                             : std::string("at rest"))));
   }
   return all;
 }
 
 std::vector<std::string> Account::events() const {
-  std::vector<std::pair<double, std::string>> told;
+  std::vector<std::pair<double, std::string>> told = causes();
+  for (std::size_t i = 0; i < turning_.size(); ++i) {
+    const Turning& its = turning_[i];
+    if (!its.free || its.times.empty() || told.size() >= 2 * kToldSingly) continue;
+    told.emplace_back(
+        its.times.front(),
+        its.times.size() == 1
+            ? capital(fmt::format("{} turns over at {}.", called(cast_, int(i)), when(its.times[0])))
+            : capital(fmt::format("{} turns over {} times, first at {}, last at {}.", called(cast_, int(i)),
+                                  its.times.size(), when(its.times.front()), when(its.times.back()))));
+  }
   if (impacts_.size() <= kToldSingly) {
     for (const Impact& each : impacts_)
       told.emplace_back(each.time, fmt::format("At {} {} hits {} at {} m/s.", when(each.time),
@@ -357,7 +422,7 @@ std::vector<std::string> Account::ending() const {
       else
         all.push_back(fmt::format("At the end, at {}, {} is at {} and {}.", when(last_->time),
                                   called(cast_, body), whereabouts(it.position, cast_),
-                                  moves(it.velocity, cast_)));
+                                  moves(it.velocity, it.spin, cast_)));
     }
   }
   const double before = first_->energies.total(), after = last_->energies.total();
@@ -485,7 +550,7 @@ std::string instant_text(const sim::SceneInfo& cast, const sim::Snapshot& now) {
   for (const int body : bodies) {
     const sim::Snapshot::Body& it = now.bodies[std::size_t(body)];
     add(capital(fmt::format("{} is at {} and {}.", called(cast, body), whereabouts(it.position, cast),
-                            moves(it.velocity, cast))));
+                            moves(it.velocity, it.spin, cast))));
   }
   return all;
 }

@@ -193,7 +193,9 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
 namespace {
 
 constexpr double kSample = 1.0 / 12;        // s of the film: how often labels look where they stand
-constexpr double kMostSampled = 128 << 20;  // of instants kept for labels
+constexpr double kMostSampled = 128 << 20;  // bytes of instants kept for labels
+constexpr double kBetween = 1.0 / 60;       // s of the film: how often arrows are measured
+constexpr double kMostBetween = 32 << 20;   // bytes of instants kept for them
 
 double bytes(const sim::Snapshot& now) {
   return double(now.bodies.size() * sizeof(sim::Snapshot::Body) +
@@ -263,11 +265,12 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
   draw::RunAhead& found = watched.marks;
   found.ghosts.resize(marks.ghosts.size());
   double next = 0, stride = kSample, kept = 0;
+  double next_between = marks.vectors.empty() ? 1e300 : 0, between = 0;
   bool diverges = false;
   const bool all = !wanted.empty() || fits_run(scene);  // instants are looked at, not only those of labels
   for (const auto& [t, ghost] : instants) {
     const double film = sim::value(scene.film.speed.film(t));
-    if (!all && ghost == kAxis && film < next - 1e-9 && t < times.back()) continue;
+    if (!all && ghost == kAxis && film < std::min(next, next_between) - 1e-9 && t < times.back()) continue;
     auto outcome = run->at(t);
     if (std::holds_alternative<sim::Stopped>(outcome)) throw Interrupted();
     if (std::holds_alternative<sim::Trouble>(outcome)) break;
@@ -294,7 +297,13 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
     if (fits_run(scene)) watched.reach.add(watched.cast, now);
     for (std::size_t i = 0; i < wanted.size(); ++i)
       add(watched.cast, now, wanted[i], lines[i], watched.plots[i]);
-    if (marks.empty() || film < next - 1e-9) continue;
+    if (marks.empty()) continue;
+    if (film < next - 1e-9) {
+      if (film < next_between - 1e-9) continue;
+      between += bytes(now), next_between = between < kMostBetween ? film + kBetween : 1e300;
+      found.between.push_back(std::move(now));
+      continue;
+    }
     kept += bytes(now);
     found.samples.push_back({std::move(now), film});
     // of a large scene fewer

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,7 +16,9 @@ namespace obscura::app::telling {
 
 namespace {
 
-constexpr double kNoMotion = 1e-9;  // of the room's height a second: slower does not move
+constexpr double kNoMotion = 1e-9;   // of the room's height a second: slower does not move
+constexpr double kNoTurning = 1e-9;  // rad/s
+constexpr double kRight = 1e-9;      // of its size: so much may a box's diagonals differ
 constexpr double kNothing = 1e-30, kSmall = 1e-4, kLarge = 1e6;  // numbers that are told as 0, with a power
 
 // to a thousandth of what all lasts, or is long, but that where it is longer than 1
@@ -26,19 +28,42 @@ double rounded(double x, double all) {
   return std::round(x * parts) / parts;
 }
 
-const char* kind(const sim::SceneInfo& cast, const sim::SceneInfo::Body& body, bool many) {
+// Whether its corners are a box's: all as far from the centre, each with one opposite. A box that cannot turn
+// keeps the pose that the scene gives it as a polygon or hull.
+bool has_corners_of_box(const sim::SceneInfo& cast, const sim::SceneInfo::Body& body) {
+  const std::size_t corners = cast.dimension == 2 ? 4 : 8;
+  if (body.radius > 0 || body.vertices.size() != corners) return false;
+  const double far = body.vertices[0].norm();
+  return std::all_of(body.vertices.begin(), body.vertices.end(), [&](const sim::Vec3& v) {
+    return std::abs(v.norm() - far) <= kRight * far &&
+           std::any_of(body.vertices.begin(), body.vertices.end(),
+                       [&](const sim::Vec3& other) { return (v + other).norm() <= kRight * far; });
+  });
+}
+
+struct Noun {
+  const char *one, *many;
+};
+
+Noun noun(const sim::SceneInfo& cast, const sim::SceneInfo::Body& body) {
   switch (body.kind) {
     case sim::ShapeKind::point:
-      return many ? "particles" : "particle";
+      return {"particle", "particles"};
     case sim::ShapeKind::ball:
-      return cast.dimension == 2 ? (many ? "discs" : "disc") : many ? "balls" : "ball";
+      return cast.dimension == 2 ? Noun{"disc", "discs"} : Noun{"ball", "balls"};
     case sim::ShapeKind::box:
-      return many ? "boxes" : "box";
+      return {"box", "boxes"};
     case sim::ShapeKind::capsule:
-      return many ? "capsules" : "capsule";
-    default:
-      return many ? "bodies" : "body";
+      return {"capsule", "capsules"};
+    case sim::ShapeKind::polygon:
+    case sim::ShapeKind::hull:
+      if (has_corners_of_box(cast, body)) return {"box", "boxes"};
+      return cast.dimension == 2 ? Noun{"polygon", "polygons"} : Noun{"polyhedron", "polyhedra"};
+    case sim::ShapeKind::compound:
+      if (body.parts.size() == 1 && body.parts[0].kind == sim::ShapeKind::box) return {"box", "boxes"};
+      return {"body", "bodies"};
   }
+  return {"body", "bodies"};
 }
 
 }  // namespace
@@ -101,8 +126,11 @@ std::string motion(const sim::Vec3& v, const sim::SceneInfo& cast) {
 
 bool stands(const sim::Vec3& v, const sim::SceneInfo& cast) { return !(v.norm() > kNoMotion * cast.scale); }
 
-std::string moves(const sim::Vec3& v, const sim::SceneInfo& cast) {
-  return stands(v, cast) ? "does not move" : "moves " + motion(v, cast);
+bool turns(const sim::Vec3& spin) { return spin.norm() > kNoTurning; }
+
+std::string moves(const sim::Vec3& v, const sim::Vec3& spin, const sim::SceneInfo& cast) {
+  if (!stands(v, cast)) return "moves " + motion(v, cast);
+  return turns(spin) ? fmt::format("turns at {} rad/s", numeral(spin.norm())) : "does not move";
 }
 
 std::string together(std::vector<std::string> all) {
@@ -130,19 +158,19 @@ std::vector<int> moving(const sim::SceneInfo& cast) {
 
 std::string listed(const sim::SceneInfo& cast) {
   std::vector<std::string> all;
-  std::map<int, std::pair<std::size_t, const sim::SceneInfo::Body*>> kinds;
-  std::vector<int> order;
+  std::vector<std::pair<Noun, std::size_t>> kinds;  // in the order of the scene
   std::size_t fixed = 0;
   for (const sim::SceneInfo::Body& body : cast.bodies) {
     if (body.bare || (body.fixed && ++fixed)) continue;
-    auto& [n, first] = kinds[int(body.kind)];
-    if (n++ == 0) first = &body, order.push_back(int(body.kind));
+    const Noun its = noun(cast, body);
+    const auto of = std::find_if(kinds.begin(), kinds.end(),
+                                 [&](const auto& it) { return std::string_view(it.first.one) == its.one; });
+    if (of != kinds.end())
+      ++of->second;
+    else
+      kinds.emplace_back(its, 1);
   }
-  for (const int each : order) {
-    const auto& [n, first] = kinds[each];
-    all.push_back(n == 1 ? fmt::format("one {}", kind(cast, *first, false))
-                         : fmt::format("{} {}", n, kind(cast, *first, true)));
-  }
+  for (const auto& [its, n] : kinds) all.push_back(count(n, its.one, its.many));
   if (fixed > 0) all.push_back(count(fixed, "fixed body", "fixed bodies"));
   if (!cast.springs.empty()) all.push_back(count(cast.springs.size(), "spring", "springs"));
   const auto joints =

@@ -25,8 +25,10 @@ std::string wall(const sim::SceneInfo& cast, int index);
 std::string motion(const sim::Vec3& v, const sim::SceneInfo& cast);
 /// Whether it is slower than what is told as a motion: 1e-9 of the room's height a second.
 bool stands(const sim::Vec3& v, const sim::SceneInfo& cast);
-/// "moves at 3 m/s to the right", "does not move"
-std::string moves(const sim::Vec3& v, const sim::SceneInfo& cast);
+/// Whether a body of this spin (rad/s) is told to turn: faster than 1e-9 rad/s.
+bool turns(const sim::Vec3& spin);
+/// "moves at 3 m/s to the right", "turns at 2 rad/s", "does not move"
+std::string moves(const sim::Vec3& v, const sim::Vec3& spin, const sim::SceneInfo& cast);
 /// "a, b and c"
 std::string together(std::vector<std::string> all);
 /// Title and subtitle of a scene.

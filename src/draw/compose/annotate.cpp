@@ -262,10 +262,13 @@ void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
     hang(reading.tail, reading.tail);
     const WordKey key{WordKey::vector, index, reading.part};
     const auto numbered = std::find(vector.numbered.begin(), vector.numbered.end(), reading.part);
+    const std::string with_its_number =
+        numbered == vector.numbered.end()
+            ? vector.label
+            : with_number(vector.label, int(numbered - vector.numbered.begin()) + 1);
+    // its letter is a vector's, but where a number says how large it is
     const std::string label =
-        as_vector(numbered == vector.numbered.end()
-                      ? vector.label
-                      : with_number(vector.label, int(numbered - vector.numbered.begin()) + 1));
+        vector.label.find('=') == std::string::npos ? as_vector(with_its_number) : with_its_number;
     const auto set = [&](double value) {
       return this->set(key, label, value, unit(vector.quantity), legible(ink, colours_));
     };

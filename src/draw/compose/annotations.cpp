@@ -10,7 +10,10 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <span>
+#include <utility>
 
+#include "draw/compose/arrow_scales.h"
 #include "draw/compose/depict.h"
 #include "draw/picture/way.h"
 
@@ -21,49 +24,14 @@ constexpr double kChange = 14;                   // points: of a change of place
 constexpr double kWay = 0.12;                    // of each unit of its way
 constexpr double kSpeed = 1.7;                   // page units a frame that a label moves by itself
 constexpr double kQuickest = 0.3, kSlowest = 4;  // s: a change
-constexpr double kShortest = 0.6;                // of the length that an arrow would have
 constexpr double kHeadWide = 10;     // page units: of an arrow's head, which is wider than its line
 constexpr double kPathError = 0.2;   // page units
 constexpr double kCurveError = 0.3;  // of a path's error: of the points among which the needed ones are found
 constexpr double kFaintest = 0.22;   // of a path's oldest end
-constexpr double kShared = 80;       // points: of lying on another label
+constexpr double kShared = 400;      // points: of lying on another label
+constexpr double kLedThrough = 120;  // points: of a leader through another label
 constexpr double kOver = 8;          // of each unit of its own arrow that it passes over
 constexpr double kTouches = 120;     // page units: of touching it on the way
-
-// In the plane: shortens the arrows of a kind so that those of a film end below the room's ceiling, beyond
-// which the title stands. Of one that would have to be much shorter the head is at the edge. They end above
-// the floor, too, if all of them then do; not where a slope is what they cross.
-void keep_in_the_room(const Marks& marks, const sim::SceneInfo& cast,
-                      const std::vector<sim::Snapshot>& moments, const Illustrator& artist, Scales& scales) {
-  Scales part{1, 1, 1, 1, 1}, above{1, 1, 1, 1, 1};
-  for (const sim::Snapshot& now : moments) {
-    const Projection view = artist.projection(0, now);
-    if (!view.view()) return;
-    // its ceiling on the page, or the page's upper edge
-    double top = view.window().y, floor = 1e300;
-    bool slopes = false;
-    for (const sim::SceneInfo::Wall& wall : cast.walls) {
-      if (wall.normal.y() < -0.99 * wall.normal.norm()) top = std::max(top, view.page(wall.point).y());
-      if (wall.normal.y() > 0.99 * wall.normal.norm()) floor = std::min(floor, view.page(wall.point).y());
-      slopes = slopes || (wall.normal.x() != 0 && wall.normal.y() > 0);
-    }
-    for (const Marks::Vector& vector : marks.vectors) {
-      const double* scale = scale_of(vector.quantity, scales);
-      double *least = scale_of(vector.quantity, part), *shortest = scale_of(vector.quantity, above);
-      if (!scale) continue;
-      for (const Reading& reading : readings(vector, cast, now)) {
-        const double tail = view.page(reading.tail).y(),
-                     tip = view.page(reading.tail + *scale * reading.value).y();
-        if (const double fits = (tail - top) / (tail - tip); tail > top && tip < top && fits > kShortest)
-          *least = std::min(*least, fits);
-        if (tip > floor && !slopes) *shortest = std::min(*shortest, (floor - tail) / (tip - tail));
-      }
-    }
-  }
-  for (const auto member :
-       {&Scales::velocity, &Scales::force, &Scales::impulse, &Scales::momentum, &Scales::acceleration})
-    scales.*member *= above.*member > kShortest ? std::min(part.*member, above.*member) : part.*member;
-}
 
 double overlap(const Offered& a, int i, const Offered& b, int j) {
   const Point d = (a.places[std::size_t(i)].center - b.places[std::size_t(j)].center).cwiseAbs();
@@ -86,6 +54,11 @@ double under(const Point& a, const Point& b, const Point& center, const Point& s
     to = std::min(to, std::max(low / way, high / way));
   }
   return from < to ? (to - from) * (b - a).norm() : 0;
+}
+
+// whether the line from words to what they name runs through other words
+bool leads_through(const Offered& a, std::size_t i, const Offered& b, std::size_t j) {
+  return a.places[i].leader && under(a.anchor, a.places[i].center, b.places[j].center, b.size) > 0;
 }
 
 // how far it is from one place to another: a name goes around its body
@@ -244,9 +217,13 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
         }
         from[k][i] = int(before);
         double cost = offered->places[i].cost;
-        for (const auto& [other, j] : taken[sample])
+        for (const auto& [other, j] : taken[sample]) {
           if (const double both = overlap(*offered, int(i), *other, j); both > 0)
             cost += kShared * point * (1 + both);
+          if (leads_through(*offered, i, *other, std::size_t(j)) ||
+              leads_through(*other, std::size_t(j), *offered, i))
+            cost += kLedThrough * point;
+        }
         now[i] += std::clamp(dt, 0.02, 1.0) * cost;
       }
       best = now;
@@ -364,7 +341,12 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
   const Projection first = artist.projection(0, moments.front());
   const double scale = artist.scale(moments.front());
   Scales chosen = draw::scales(marks_, cast_, moments, first.window(), scale);
-  keep_in_the_room(marks_, cast_, moments, artist, chosen);
+  std::vector<SeenInstant> seen;
+  for (const auto& all : {std::span(std::as_const(moments)), std::span(std::as_const(ahead.between))})
+    for (const sim::Snapshot& now : all)
+      for (int panel = 0; panel < artist.panels(); ++panel)
+        seen.push_back({&now, artist.projection(panel, now)});
+  chosen = kept_whole(marks_, cast_, seen, lettering_.arrow, chosen);
   for (const auto member :
        {&Scales::velocity, &Scales::force, &Scales::impulse, &Scales::momentum, &Scales::acceleration})
     if (scales_.*member == 0) scales_.*member = chosen.*member;

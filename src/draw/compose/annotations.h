@@ -23,6 +23,7 @@ struct RunAhead {
     double film = 0;
   };
   std::vector<Sample> samples;              // in the order of time
+  std::vector<sim::Snapshot> between;       // more instants, for the lengths of arrows
   std::vector<sim::Snapshot> ghosts;        // one a ghost of the marks
   std::shared_ptr<const sim::Track> track;  // of the bodies with paths
 };

@@ -173,6 +173,9 @@ std::vector<Placing::Candidate> Placing::along(const Point& tail, const Point& t
             {tail + part * (tip - tail) + clear_line(side * v, gap + off * unit, size), ring, true});
       // beside its line, as of an arrow along the ground
       all.push_back({tip + (gap + off * unit / 2 + along) * u + clear_line(side * v, gap, size), ring, true});
+      // aslant, past what lies beside it
+      all.push_back({tip + (gap + off * unit / 2 + along) * u + clear_line(side * v, gap + off * unit, size),
+                     ring + 2 * unit, true});
     }
     all.push_back({tip + clear(u, gap + off * unit / 2, size), ring, true});
     ring += 6 * unit;

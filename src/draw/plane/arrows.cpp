@@ -1,5 +1,6 @@
 // An arrow: a shaft of even width and a head with swept barbs, all heads of one size; an arrow shorter than
-// its head shrinks as a whole. One that would leave the window has its head at the edge.
+// its head shrinks as a whole. One that would leave the window has its head at the edge, and is broken by two
+// strokes across its shaft, as an axis is that does not begin at zero.
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,10 @@ constexpr double kWhole = 1.5;  // heads long: from here on the head is full
 constexpr double kEdge = 8;     // page units from a window's edge to a head
 constexpr double kSmall = 40;   // radius: a halo would bite a good part out of a smaller disc
 constexpr int kHalos = 1000;    // after the layers
+constexpr int kBreaks = 2000;   // after these
+// page units: between the strokes of a break, half of one across the shaft and along it; a shaft that is not
+// so long has a smaller one
+constexpr double kBreakGap = 9, kBreakAcross = 8.6, kBreakAlong = 4, kBroken = 30;
 
 /// The head, larger by `halo` all around.
 std::vector<Point> head(const Arrow& arrow, double weight, double halo) {
@@ -24,6 +29,21 @@ std::vector<Point> head(const Arrow& arrow, double weight, double halo) {
   const double tip = std::min(slant, 2.2 * halo), back = kHead * g + halo, side = kHeadHalf * g + halo;
   return {arrow.tip + u * tip, arrow.tip - u * back + v * side, arrow.tip - u * (kNotch * g + halo),
           arrow.tip - u * back - v * side};
+}
+
+/// The break of an arrow that is cut: a gap in its shaft between two strokes.
+void draw_break(const Arrow& arrow, double weight, Color room, Color ink, List& list) {
+  const Point u = (arrow.tip - arrow.tail).normalized(), v(-u.y(), u.x());
+  const double shaft = (arrow.tip - arrow.tail).norm() - kNotch * weight * arrow.grow;
+  const double size = weight * std::clamp(shaft / (kBroken * weight), 0.0, 1.0);
+  if (!(size > 0)) return;
+  const Point middle = arrow.tail + 0.5 * shaft * u, half = 0.5 * kBreakGap * size * u,
+              slant = size * (kBreakAcross * v + kBreakAlong * u);
+  list.add({middle - half + slant, middle + half + slant, middle + half - slant, middle - half - slant},
+           room);
+  for (const Point& at : {Point(middle - half), Point(middle + half)})
+    list.add({{at - slant, 0.6 * kArrowLine * weight, ink}, {at + slant, 0.6 * kArrowLine * weight, ink}},
+             Cap::butt);
 }
 
 /// Draws a halo of this width along a way, but not over small discs.
@@ -53,20 +73,23 @@ void draw_halo(const Point& from, const Point& to, double width, Color room, con
 }  // namespace
 
 void offer(const Point& tail, Point tip, const Rect& window, double weight, std::vector<Arrow>& arrows) {
-  // how much of its way lies in the window, if it begins there
-  const Point low = Point(window.x, window.y).array() + kEdge * weight;
-  const Point high = Point(window.x + window.width, window.y + window.height).array() - kEdge * weight;
-  if ((tail.array() >= low.array()).all() && (tail.array() <= high.array()).all()) {
+  // one that begins in the window and would leave it has its head a little before the edge
+  const Point low(window.x, window.y), high = low + Point(window.width, window.height);
+  const auto within = [&](const Point& p, double margin) {
+    return (p.array() >= low.array() + margin).all() && (p.array() <= high.array() - margin).all();
+  };
+  const bool cut = within(tail, kEdge * weight) && !within(tip, 0);
+  if (cut) {
     double part = 1;
     for (int i = 0; i < 2; ++i) {
-      const double edge = tip[i] < tail[i] ? low[i] : high[i];
+      const double edge = tip[i] < tail[i] ? low[i] + kEdge * weight : high[i] - kEdge * weight;
       if (std::abs(tip[i] - tail[i]) > std::abs(edge - tail[i]))
         part = std::min(part, (edge - tail[i]) / (tip[i] - tail[i]));
     }
     tip = tail + part * (tip - tail);
   }
   const double grow = std::min(1.0, (tip - tail).norm() / (kWhole * kHead * weight));
-  if (grow > kSmallest) arrows.push_back({tail, tip, grow});
+  if (grow > kSmallest) arrows.push_back({.tail = tail, .tip = tip, .grow = grow, .cut = cut});
 }
 
 // one kind after another: few batches
@@ -115,6 +138,12 @@ void draw_arrows(const std::vector<Arrow>& arrows, const std::vector<Color>& ink
   for (std::size_t i = 0; i < arrows.size(); ++i) shaft(arrows[i], 0, inks[i]);
   for (std::size_t i = 0; i < arrows.size(); ++i)
     hang(arrows[i]), list.add(head(arrows[i], weight, 0), inks[i]);
+  Subject breaks = own;
+  breaks.index += kBreaks;
+  list.of(breaks);
+  for (std::size_t i = 0; i < arrows.size(); ++i)
+    if (arrows[i].cut) hang(arrows[i]), draw_break(arrows[i], weight, room, inks[i], list);
+  list.of(own);
   if (hung) list.hang({});
 }
 

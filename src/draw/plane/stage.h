@@ -77,10 +77,12 @@ struct Arrow {
   Point tail, tip;
   double grow = 1;                // of its head and shaft
   double bare = 2;                // from here on along its way (0 to 1) it has no halo: 2: all of it has
+  bool cut = false;               // it would be longer, but ends at the window's edge
   std::optional<Hang> hang = {};  // in space
 };
 
-/// An arrow, if it is large enough to be seen. One that begins in the window ends there.
+/// An arrow, if it is large enough to be seen. One that begins in the window ends there; if it is shorter for
+/// that, two strokes across its shaft say so.
 void offer(const Point& tail, Point tip, const Rect& window, double weight, std::vector<Arrow>& arrows);
 
 /// An arrow at a window's edge to what lies outside it, `away` from its middle.

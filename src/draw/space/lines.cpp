@@ -25,7 +25,6 @@ constexpr double kDropLine = 1.6, kDropDash = 7, kDropGap = 5, kDropFoot = 9;
 void trace_trails(SpaceFrame& s, Ways ways) {
   s.list.of(kSeenLines);
   const SpaceStage& stage = s.stage;
-  const Blend blend = stage.look.theme == Theme::paper ? Blend::darken : Blend::lighten;
   HiddenLines::Parts parts;
   for (std::size_t i = 0; i < stage.look.bodies.size() && i < s.now.bodies.size(); ++i) {
     const double lasting = stage.look.bodies[i].trail;
@@ -66,7 +65,7 @@ void trace_trails(SpaceFrame& s, Ways ways) {
 
     std::vector<Node> line;
     const auto flush = [&] {
-      s.list.add(line, Cap::round, blend);
+      s.list.add(line, Cap::round);
       line.clear();
     };
     for (std::size_t k = 0; k + 1 < chosen.size(); ++k) {
@@ -149,7 +148,6 @@ void trace_drops(SpaceFrame& s) {
 void trace_paths(SpaceFrame& s, std::span<const WorldLine> paths, bool front) {
   s.list.of(kSeenLines);
   const SpaceStage& stage = s.stage;
-  const Blend blend = stage.look.theme == Theme::paper ? Blend::darken : Blend::lighten;
   HiddenLines::Parts parts;
   for (const WorldLine& path : paths) {
     if (path.front != front) continue;
@@ -164,7 +162,7 @@ void trace_paths(SpaceFrame& s, std::span<const WorldLine> paths, bool front) {
     if (!seen.places.empty()) s.solids.ways.push_back(std::move(seen));
     std::vector<Node> line;
     const auto flush = [&] {
-      if (line.size() > 1) s.list.add(line, Cap::round, blend);
+      if (line.size() > 1) s.list.add(line, Cap::round);
       line.clear();
     };
     for (std::size_t k = 0; k + 1 < path.nodes.size(); ++k) {
