@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "draw/compose/annotate.h"
 #include "draw/page/plot.h"
@@ -19,6 +20,8 @@ constexpr double kNameBelow = 9 * kPoint;  // the numbers
 constexpr double kInside = 1 * kPoint;     // of the page's edge
 constexpr double kFarNumbers = 26 * kPoint,
                  kNearNumbers = 18 * kPoint;  // between numbers beside and above each other
+
+constexpr double kNameBetween = 2.6 * kRulerType;  // between two numbers that have the name between them
 
 }  // namespace
 
@@ -55,12 +58,22 @@ void draw_rulers(const Layout& layout, const View& view, const Palette& colours,
     write(number(x), {std::clamp(at, page_left + half, page_right - half), base}, 0.5);
   }
   line({beside, top}, {beside, bottom});
-  write("y / \"m\"", {beside - kTick - 1.5 * kPoint, top + 0.5 * kRulerType}, 1);
-  for (const double y : ticks(y_low, y_high, int((bottom - top) / kNearNumbers))) {
-    const double at = view.page({0, y, 0}).y();
+  // the name between the numbers at the upper end, or in place of the last where they are close
+  const std::vector<double> heights = ticks(y_low, y_high, int((bottom - top) / kNearNumbers));
+  const auto page_y = [&](double y) { return view.page({0, y, 0}).y(); };
+  double name = top + 0.26 * kRulerType;
+  bool between = false;
+  if (heights.size() > 1) {
+    const double last = page_y(heights.back()), before = page_y(heights[heights.size() - 2]);
+    between = before - last > kNameBetween;
+    if (between) name = (last + before) / 2;
+  }
+  const double numbers_end = beside - kTick - 1.5 * kPoint;
+  write("y / \"m\"", {numbers_end, name + 0.24 * kRulerType}, 1);
+  for (const double y : heights) {
+    const double at = page_y(y);
     line({beside, at}, {beside - kTick, at});
-    if (at > top + 1.4 * kRulerType)
-      write(number(y), {beside - kTick - 1.5 * kPoint, at + 0.24 * kRulerType}, 1);
+    if (between || at > top + 1.4 * kRulerType) write(number(y), {numbers_end, at + 0.24 * kRulerType}, 1);
   }
 }
 
