@@ -21,6 +21,12 @@ MovieSpec pipe_spec(int width, int height, int num, int den = 1) {
   return spec;
 }
 
+std::vector<std::uint8_t> bytes_for(PipeFormat format, const Image& image) {
+  std::vector<std::uint8_t> bytes;
+  PipeFrames(format, pipe_spec(image.width, image.height, 60)).make(image, nullptr, bytes);
+  return bytes;
+}
+
 TEST(Pipe, FfmpegReadsTheSamePlanesFromY4m) {
   Folder folder;
   const std::string path = folder / "a.y4m";
@@ -30,7 +36,7 @@ TEST(Pipe, FfmpegReadsTheSamePlanesFromY4m) {
   std::vector<std::uint8_t> planes;
   for (unsigned n = 0; n < 4; ++n) {
     const Image image = random_image(66, 50, n);
-    EXPECT_TRUE(pipe.write(image));
+    EXPECT_TRUE(pipe.write(bytes_for(PipeFormat::y4m, image)));
     std::vector<std::uint8_t> one(66 * 50 * 3 / 2);
     convert(image, {one.data(), one.data() + 66 * 50, one.data() + 66 * 50 * 5 / 4, 66, 33, 33});
     planes.insert(planes.end(), one.begin(), one.end());
@@ -48,8 +54,8 @@ TEST(Pipe, RawFramesAreThePixels) {
   const int file = ::open((folder / "a.rgba").c_str(), O_CREAT | O_WRONLY, 0666);
   PipeWriter pipe(file, PipeFormat::rgba, pipe_spec(7, 5, 60));
   const Image image = random_image(7, 5, 1);
-  EXPECT_TRUE(pipe.write(image));
-  EXPECT_TRUE(pipe.write(image));
+  EXPECT_TRUE(pipe.write(bytes_for(PipeFormat::rgba, image)));
+  EXPECT_TRUE(pipe.write(bytes_for(PipeFormat::rgba, image)));
   ::close(file);
   std::vector<std::uint8_t> twice = image.pixels;
   twice.insert(twice.end(), image.pixels.begin(), image.pixels.end());
@@ -68,8 +74,8 @@ TEST(Pipe, AClosedPipeIsFalse) {
     EXPECT_GT(::read(ends[0], some, sizeof some), 0);
     ::close(ends[0]);
   });
-  EXPECT_FALSE(pipe.write(image));
-  EXPECT_FALSE(pipe.write(image));
+  EXPECT_FALSE(pipe.write(bytes_for(PipeFormat::y4m, image)));
+  EXPECT_FALSE(pipe.write(bytes_for(PipeFormat::y4m, image)));
   ::close(ends[1]);
 }
 
@@ -84,7 +90,7 @@ TEST(Pipe, WaitsForASlowReaderThatDoesNotBlock) {
     for (ssize_t n; (n = ::read(ends[0], some, sizeof some)) > 0;) got.insert(got.end(), some, some + n);
   });
   PipeWriter pipe(ends[1], PipeFormat::rgba, pipe_spec(640, 480, 60));
-  EXPECT_TRUE(pipe.write(image));
+  EXPECT_TRUE(pipe.write(bytes_for(PipeFormat::rgba, image)));
   ::close(ends[1]);
   reader.join();
   ::close(ends[0]);
@@ -94,12 +100,30 @@ TEST(Pipe, WaitsForASlowReaderThatDoesNotBlock) {
 TEST(Pipe, AFullDeviceIsAnError) {
   const int file = ::open("/dev/full", O_WRONLY);
   PipeWriter pipe(file, PipeFormat::rgba, pipe_spec(4, 4, 60));
-  EXPECT_THROW(pipe.write(random_image(4, 4, 1)), Error);
+  EXPECT_THROW(pipe.write(bytes_for(PipeFormat::rgba, random_image(4, 4, 1))), Error);
   ::close(file);
 }
 
 TEST(Pipe, OddSizesAreRefusedInY4m) {
   EXPECT_THROW(PipeWriter(1, PipeFormat::y4m, pipe_spec(5, 4, 60)), Error);
+  EXPECT_THROW(PipeFrames(PipeFormat::y4m, pipe_spec(5, 4, 60)), Error);
+}
+
+// What alone has changed is converted alone: the same bytes as of the whole.
+TEST(Pipe, OfWhatChangedTheBytesAreThoseOfTheWhole) {
+  PipeFrames frames(PipeFormat::y4m, pipe_spec(64, 48, 60));
+  Image image = random_image(64, 48, 1);
+  std::vector<std::uint8_t> bytes;
+  frames.make(image, nullptr, bytes);
+  const std::vector<std::uint8_t> before = bytes;
+  const std::vector<Rect> changed{{8, 4, 20, 10}, {40, 30, 24, 18}};
+  const Image other = random_image(64, 48, 2);
+  for (const Rect& rect : changed)
+    for (int y = rect.y; y < rect.y + rect.height; ++y)
+      std::copy_n(other.row(y) + 4 * rect.x, 4 * rect.width, image.row(y) + 4 * rect.x);
+  frames.make(image, &changed, bytes);
+  EXPECT_NE(bytes, before);
+  EXPECT_EQ(bytes, bytes_for(PipeFormat::y4m, image));
 }
 
 }  // namespace

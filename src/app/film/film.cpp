@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <mutex>
 #include <set>
 #include <thread>
 #include <tuple>
@@ -37,6 +38,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The memory of frames that have been written, for those to come.
+class SpareFrames {
+ public:
+  std::vector<std::uint8_t> take() {
+    const std::lock_guard lock(mutex_);
+    if (frames_.empty()) return {};
+    std::vector<std::uint8_t> last = std::move(frames_.back());
+    frames_.pop_back();
+    return last;
+  }
+  void give(std::vector<std::uint8_t> frame) {
+    const std::lock_guard lock(mutex_);
+    frames_.push_back(std::move(frame));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::vector<std::uint8_t>> frames_;
+};
+
 // Makes one film, or a share of it.
 class Filming {
  public:
@@ -48,8 +69,8 @@ class Filming {
   struct DrawnSegment {
     std::int64_t number = 0;
     int frames = 0;
-    bool whole = true;                 // false: an interrupt cut it short
-    std::vector<media::Image> images;  // of a pipe
+    bool whole = true;                               // false: an interrupt cut it short
+    std::vector<std::vector<std::uint8_t>> piped{};  // frames of a pipe
   };
 
   bool movie() const { return output_.form == Output::Form::movie; }
@@ -91,6 +112,7 @@ class Filming {
   std::int64_t done_ = 0, found_ = 0;  // frames: made, and there before
   std::atomic<std::int64_t> drawn_ = 0;
   bool open_ = true;  // the pipe's other end
+  SpareFrames spare_;
 };
 
 Filming::Filming(const scene::Scene& scene, const Shots& shots, const Output& output,
@@ -233,6 +255,8 @@ Filming::DrawnSegment Filming::print(FilmSegment take, FrameRenderer& darkroom) 
   Checksums states(shots_.size(), take.all_bodies(0).bodies.size());
   std::optional<media::SegmentEncoder> encoder;
   if (movie()) encoder.emplace(output_.path, spec_);
+  std::optional<media::PipeFrames> pipe_frames;
+  if (output_.form == Output::Form::pipe) pipe_frames.emplace(options_.pipe, spec_);
   for (std::size_t i = 0; i < take.shots.size(); ++i) {
     if (interrupted() && i > 0) {
       print.whole = false;
@@ -243,7 +267,10 @@ Filming::DrawnSegment Filming::print(FilmSegment take, FrameRenderer& darkroom) 
       encoder->add(image, darkroom.changed());
       states.add(take.number * journal_.take_frames + std::int64_t(i), take.states[i], take.all_bodies(i));
     }
-    if (output_.form == Output::Form::pipe) print.images.push_back(image);
+    if (pipe_frames) {
+      print.piped.push_back(spare_.take());
+      pipe_frames->make(image, i > 0 ? darkroom.changed() : nullptr, print.piped.back());
+    }
     if (pictures()) {
       Origin of_frame = origin;
       of_frame.shot = take.shots[i], of_frame.state = take.states[i], of_frame.frames = 0;
@@ -285,8 +312,9 @@ void Filming::shoot(Simulation& simulation, Progress& progress) {
   parts.wait = [&] { progress.at(drawn_); };
   parts.hire = [&] { return hire(); };
   parts.consume = [&](DrawnSegment print) {
-    for (const media::Image& image : print.images) {
-      if (open_ && !pipe->write(image)) open_ = false;
+    for (std::vector<std::uint8_t>& frame : print.piped) {
+      if (open_ && !pipe->write(frame)) open_ = false;
+      spare_.give(std::move(frame));
     }
     done_ += print.frames;
     if (store_) store_->worked();
