@@ -23,6 +23,7 @@
 #include "app/film/estimate.h"
 #include "app/film/film.h"
 #include "app/run/compared.h"
+#include "app/run/run_marks.h"
 #include "app/run/shots.h"
 #include "media/error.h"
 #include "scene/body_kinds.h"
@@ -42,6 +43,8 @@ std::string count(std::size_t n, std::string_view one, std::string_view many) {
 
 // how long the first steps are watched, s
 constexpr double kWatched = 0.5;
+// how long a run may take that is run for its marks, s
+constexpr double kLongestRun = 20;
 
 // tracks that are touched, and wires, which beads share
 template <int D>
@@ -141,6 +144,18 @@ struct Plan {
   std::vector<std::string> runs;  // that the film shows together
 };
 
+// the scene with the times of its run's marks, at which the film may stand still or end, where its run takes
+// no long time
+scene::Scene with_marks(scene::Scene scene) {
+  if (!waits_for_run(scene)) return scene;
+  const Shots shots = Shots::film(scene.duration, scene.film.fps, scene.film.speed);
+  doing("measuring the first steps of " + scene.file);
+  if (needs(scene, shots, {Output::Form::movie, scene.name + ".mp4"}, kWatched).simulate > kLongestRun)
+    return scene;
+  doing("running " + scene.file + " for its marks");
+  return with_run_marks(std::move(scene));
+}
+
 Plan plan(const scene::Scene& scene) {
   const Shots shots = Shots::film(scene.duration, scene.film.fps, scene.film.speed);
   doing("measuring the first steps of " + scene.file);
@@ -152,6 +167,10 @@ Plan plan(const scene::Scene& scene) {
     it.warnings.push_back(
         fmt::format("that is more memory than the {} it may have", bytes_text(memory_limit())));
   for (const sim::Trouble& ahead : scene.stability_warnings()) it.warnings.push_back(ahead.likely);
+  if (waits_for_run(scene))
+    it.warnings.push_back(
+        "only its run tells where the film stands still or ends at marks and events: frames "
+        "are counted without them");
   for (const Ahead::Run& run : runs) it.runs.push_back(run.look.name);
   try {
     media::check(scene.name + ".mp4", movie_spec(scene));
@@ -234,7 +253,7 @@ int check(const std::vector<std::string>& files, const std::vector<std::string>&
   for (const std::string& file : files) {
     try {
       doing("reading " + file);
-      const scene::Scene scene = scene::read(file, sets);
+      const scene::Scene scene = with_marks(scene::read(file, sets));
       const Plan made = plan(scene);
       std::string said;
       std::visit(

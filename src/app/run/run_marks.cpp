@@ -59,8 +59,12 @@ std::vector<std::pair<std::string, sim::Rational>> in_order(const scene::RunMark
 
 }  // namespace
 
+bool waits_for_run(const scene::Scene& scene) {
+  return !scene.marked && !scene.trajectory && (!scene.marks.empty() || may_stop(scene));
+}
+
 scene::Scene with_run_marks(scene::Scene scene) {
-  if (scene.marked || scene.trajectory || (scene.marks.empty() && !may_stop(scene))) return scene;
+  if (!waits_for_run(scene)) return scene;
   const scene::RunMarks found = marks_of_run(scene);
   for (const std::string& mark : scene.marks)
     if (!found.at(mark))

@@ -9,6 +9,9 @@
 
 namespace obscura::app {
 
+/// Whether a film of the scene needs its run before: it names marks, or an event may stop it.
+bool waits_for_run(const scene::Scene& scene);
+
 /// The scene with the times of its run's marks in place, and as long as the run until an event stops it: it
 /// is run once, where its film or figure asks for that. Says which marks the run does not come to. Throws
 /// Interrupted.
