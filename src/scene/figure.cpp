@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "draw/page/measure.h"
@@ -117,11 +118,18 @@ class Reader {
                       interval.panels));
     return interval;
   }
-  // a command that is not known, and where
-  void mathematics(const Fields& fields, const char* key) const {
-    if (!fields.given(key)) return;
-    if (const auto wrong = draw::mistake(fields.text(key)))
-      complaints_.add(fields.place(key), fmt::format("'{}', column {}: {}", key, wrong->column, wrong->what));
+  // what is not whole or not known in a part of the text, and where; whether there is something
+  bool mathematics(const Fields& fields, const char* key, std::size_t from = 0,
+                   std::size_t length = std::string::npos) const {
+    if (!fields.given(key)) return false;
+    const std::string& text = fields.text(key);
+    const auto wrong = draw::mistake(std::string_view(text).substr(from, length));
+    if (!wrong) return false;
+    const auto before = std::count_if(text.begin(), text.begin() + std::ptrdiff_t(from),
+                                      [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+    complaints_.add(fields.place(key), fmt::format("'{}', column {}: {}", key,
+                                                   wrong->column + std::size_t(before), wrong->what));
+    return true;
   }
   // what a label says, and whether the value in it can be shown
   std::string label(const Fields& fields, const char* key, bool valued = true) const {
@@ -316,9 +324,9 @@ void read_frame(const Fields& fields, const Reader<D>& read, Diagnostics& compla
     const std::size_t end = std::min(titles.find(';', from), titles.size());
     const std::size_t first = std::min(titles.find_first_not_of(' ', from), end);
     figure.titles.push_back(titles.substr(first, end - first));
+    if (read.mathematics(fields, "titles", first, end - first)) break;
     from = end + 1;
   }
-  read.mathematics(fields, "titles");
   figure.vary = fields.text("vary");
   if (const auto equals = figure.vary.find('=');
       fields.given("vary") && (equals == 0 || equals == std::string::npos))

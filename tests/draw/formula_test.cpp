@@ -122,6 +122,116 @@ TEST(Formula, AnUnknownCommandIsToldWithItsColumn) {
   EXPECT_EQ(found->column, 5u);
   EXPECT_EQ(found->what, "unknown command '\\omgea'; did you mean '\\omega'?");
   EXPECT_TRUE(mistake("a $b"));
+  EXPECT_EQ(mistake("café \\omgea")->column, 6u);  // counted in characters
+}
+
+// What is not whole: told at its column, with how it is written.
+TEST(Formula, WhatIsNotWholeIsAMistake) {
+  struct Case {
+    const char *text, *what;
+    std::size_t column;
+  };
+  for (const Case& wrong : {
+           Case{"\\frac{1}", "'\\frac' needs what stands above and below: '\\frac{1}{2}'", 1},
+           {"a \\frac{1}{2", "'{' without a '}' that closes it", 11},
+           {"\\frac{}{2}", "'\\frac' needs", 1},
+           {"\\sqrt", "'\\sqrt' needs what stands under it: '\\sqrt{2gh}'", 1},
+           {"\\sqrt[3", "'[' without a ']'", 6},
+           {"x^", "'^' without what it raises", 2},
+           {"x_ y", "'_' without what it lowers", 2},
+           {"10^{}", "'^' without what it raises", 3},
+           {"v_{a^}", "'^' without what it raises", 5},
+           {"{a", "'{' without a '}'", 1},
+           {"a}", "'}' without a '{'", 2},
+           {"\\hat", "'\\hat' needs its letter", 1},
+           {"\\text", "'\\text' needs its words", 1},
+           {"x^\\frac{1}{2}", "'\\frac' needs braces here", 3},
+           {"\\left( x", "'\\left' without its '\\right'", 1},
+           {"x \\right)", "'\\right' without its '\\left'", 3},
+           {"\\left x \\right)", "'\\left' without a bracket", 1},
+           {"*v", "'*' without another", 1},
+           {"\"at rest", "'\"' without another", 1},
+           {"so $\\sqrt$", "'\\sqrt' needs", 5},
+           {"so $x$ and \\alpha", "outside of the dollars", 12},
+           {"x\\", "without a command", 2},
+       }) {
+    const auto found = mistake(wrong.text);
+    ASSERT_TRUE(found) << wrong.text;
+    EXPECT_EQ(found->column, wrong.column) << wrong.text;
+    EXPECT_THAT(found->what, testing::HasSubstr(wrong.what)) << wrong.text;
+  }
+  for (const char* whole :
+       {"\\frac12", "\\frac \\pi 2", "x^*", "v^-", "v_center'", "v_\"max\"", "$x^ 2$", "{} m",
+        "*v* = {:.2} m/s", "\\sqrt[3]{2}", "\\{ x \\}", "\\left\\{ \\frac{{}}{2} \\right.", "costs \\$5",
+        "\\sum_{i=1}^n i", "[0, 1)", "\\overline{AB} \\dfrac{1}{2} \\tfrac12", "\\operatorname{div} *v*",
+        "x'^2", "30^\\circ"})
+    EXPECT_FALSE(mistake(whole)) << whole << ": " << mistake(whole)->what;
+}
+
+TEST(Formula, ADollarWithABackslashIsASign) {
+  EXPECT_EQ(set("costs \\$5")[0].first, "costs $5");
+  EXPECT_EQ(set("\\$5 for $x$")[0].first, "$5 for ");
+  EXPECT_EQ(set("\"costs \\$5\"")[0].first, "costs $5");
+}
+
+// The limits keep off the ink of the sign, and not far.
+TEST(Formula, LimitsOfASumAreClearOfItsSign) {
+  for (const char* sign : {"\\sum", "\\prod"}) {
+    const Formula it = formula(std::string(sign) + "_{i=1}^n", 100, {});
+    ASSERT_EQ(it.parts.size(), 3u);
+    const auto ink = [&](std::size_t k) {
+      const auto [above, below] = ink_of({{0, 0}, Align::left, it.parts[k].spans});
+      return std::pair(it.places[k].y() - above, it.places[k].y() + below);
+    };
+    const auto [top, foot] = ink(0);
+    EXPECT_GT(ink(1).first, foot + 6) << sign;
+    EXPECT_LT(ink(1).first, foot + 25) << sign;
+    EXPECT_LT(ink(2).second, top - 6) << sign;
+    EXPECT_GT(ink(2).second, top - 25) << sign;
+  }
+}
+
+TEST(Formula, AFunctionHasRoomBeforeALetterNotBeforeABracket) {
+  const auto room = [](const std::string& text, const std::string& first, const std::string& second) {
+    return formula(text, 100, {}).width - formula(first, 100, {}).width - formula(second, 100, {}).width;
+  };
+  EXPECT_NEAR(room("\\sin\\theta", "\\sin", "\\theta"), 17, 1);
+  EXPECT_NEAR(room("sin\\theta", "sin", "\\theta"), 17, 1);
+  EXPECT_NEAR(room("\\sin(x)", "\\sin", "(x)"), 0, 1);
+  EXPECT_NEAR(room("$\\sin^2 x$", "$\\sin^2$", "$x$"), 17, 1);
+  EXPECT_NEAR(room("$\\sin (x)$", "$\\sin$", "$(x)$"), 0, 1);
+  EXPECT_NEAR(room("$2\\sin x$", "$2$", "$\\sin x$"), 17, 1);
+  EXPECT_NEAR(room("2\\operatorname{sinc} x", "2", "\\operatorname{sinc} x"), 17, 1);
+}
+
+TEST(Formula, BracketsAreAsHighAsWhatIsBetweenThem) {
+  for (const auto& [left, right] : {std::pair("(", ")"), {"[", "]"}, {"\\{", "\\}"}}) {
+    const Formula fraction = formula("\\frac{a}{b}", 100, {});
+    const Formula it = formula(std::string("\\left") + left + "\\frac{a}{b}\\right" + right, 100, {});
+    ASSERT_EQ(it.spans.size(), 2u);
+    for (const Span& span : it.spans) {
+      const auto [above, below] = ink_of({{0, 0}, Align::left, {span}});
+      EXPECT_GT(above, fraction.ascent - 12) << left;
+      EXPECT_GT(below, fraction.descent - 12) << left;
+      EXPECT_NEAR(above - 25, below + 25, 12) << left;  // around the axis
+    }
+    EXPECT_GT(it.width, fraction.width + 50) << left;
+  }
+  const Formula bars = formula("\\left|\\frac{a}{b}\\right|", 100, {});
+  ASSERT_EQ(bars.lines.size(), 3u);
+  EXPECT_LT(bars.lines[0].points[0].y(), -formula("\\frac{a}{b}", 100, {}).ascent + 1);
+  EXPECT_GT(bars.lines[2].points[0].x(), bars.lines[1].points[1].x());
+  // what is not high has brackets of their own size
+  EXPECT_EQ(formula("\\left(x\\right)", 100, {}).spans[0].size, 100);
+  EXPECT_EQ(formula("\\left.\\frac{a}{b}\\right|", 100, {}).lines.size(), 2u);
+}
+
+TEST(Formula, ALineLiesOverAllOfIt) {
+  const Formula it = formula("\\overline{AB}", 100, {}), letters = formula("AB", 100, {});
+  ASSERT_EQ(it.overs.size(), 1u);
+  EXPECT_NEAR(it.overs[0].to - it.overs[0].from, letters.width, 4);
+  EXPECT_GT(it.overs[0].rise, letters.ascent);
+  EXPECT_NEAR(formula("\\dfrac{1}{2}", 100, {}).width, formula("\\frac{1}{2}", 100, {}).width, 1e-9);
 }
 
 TEST(Formula, WhatIsNotClosedOrNotKnownStaysReadable) {
@@ -157,31 +267,66 @@ TEST(Formula, AValueHasThreeDigitsAndItsUnit) {
   EXPECT_EQ(as_vector("net force"), "net force");
 }
 
-// A number that changes: the digits stay, and nothing but its own space stands between it and the sign.
-TEST(Formula, DigitsOfALiveValueStayAndLeaveNoHole) {
-  const std::string text = "F = {:.1} N";
-  const auto ends = [&](double value) {
-    const Formula it = live(text, value, -3.2, 120, "N", 100, {});
-    double x = 0, equals = 0;
-    std::vector<double> at;  // where the sign, the number and the unit end
-    for (const Span& span : it.spans) {
-      x += span.lead;
-      if (span.tabular) {
-        EXPECT_NEAR(x, equals, 1e-9) << value;
+// A number that changes: its end, and all that stands before it and behind it, stays where it is, whatever
+// digits and sign the number has.
+TEST(Formula, ALiveLabelKeepsItsPlaceAndItsWidth) {
+  for (const std::string text : {"v_y = {:.1} m/s", "F = {}", "$\\frac{1}{2} = {}$", "{}"}) {
+    const auto places = [&](double value) {
+      const Formula it = live(text, value, -3.2, 120, "m/s", 100, {});
+      double x = 0;
+      std::vector<double> at{it.width};  // where what does not change begins, and the number ends
+      for (const Span& span : it.spans) {
+        x += span.lead;
+        if (!span.tabular) at.push_back(x);
+        x += shape({{0, 0}, Align::left, {span}}).width - span.lead;
+        if (span.tabular) at.push_back(x);
       }
-      x += shape({{0, 0}, Align::left, {span}}).width - span.lead;
-      if (span.text.find('=') != std::string::npos) equals = x;
-      at.push_back(x);
+      for (const Point& place : it.places) at.push_back(place.x());
+      return at;
+    };
+    const std::vector<double> widest = places(120);
+    for (const double value : {-3.2, -0.04, 0.0, 9.99, 10.01, 99.96}) {
+      const std::vector<double> at = places(value);
+      ASSERT_EQ(at.size(), widest.size()) << text;
+      for (std::size_t k = 0; k < at.size(); ++k) EXPECT_NEAR(at[k], widest[k], 1e-9) << text << " " << value;
     }
-    EXPECT_NEAR(x, it.width, 1e-6) << value;
-    return at;
-  };
-  const std::vector<double> long_one = ends(120), short_one = ends(2.4), below = ends(-3.2);
-  ASSERT_EQ(short_one.size(), long_one.size());
-  for (std::size_t k = short_one.size() - 2; k < short_one.size(); ++k) {
-    EXPECT_NEAR(short_one[k], long_one[k], 1e-9) << k;
-    EXPECT_NEAR(below[k], long_one[k], 1e-9) << k;
   }
+  // a value of one sign and one number of digits has no room before it
+  EXPECT_NEAR(live("{:.1}", 5, 2, 9, "", 100, {}).width,
+              formula("\x01"
+                      "5.0\x02",
+                      100, {})
+                  .width,
+              1e-9);
+}
+
+// Powers of ten in place of "e+14", from a million up and below a ten thousandth.
+TEST(Formula, LargeAndSmallNumbersHaveAPowerOfTen) {
+  EXPECT_EQ(as_number(7.4e14), "7.4 \\times 10^{14}");
+  EXPECT_EQ(as_number(-5e-8), "-5 \\times 10^{-8}");
+  EXPECT_EQ(as_number(250000), "250000");
+  EXPECT_EQ(as_number(0), "0");
+  EXPECT_THAT(as_numbers({0, 5e-8, 1e-7}), ElementsAre("0", "0.5 \\times 10^{-7}", "1 \\times 10^{-7}"));
+  EXPECT_THAT(as_numbers({0, 0.00005, 0.0001}), ElementsAre("0", "0.5 \\times 10^{-4}", "1 \\times 10^{-4}"));
+  EXPECT_THAT(as_numbers({-0.5, 1e-17, 0.5}), ElementsAre("-0.5", "0", "0.5"));
+  EXPECT_EQ(with_value("p = {}", 1204318732728, "kg m/s"), "p = 1.20 \\times 10^{12}\" kg m/s\"");
+  EXPECT_EQ(with_value("{}", 9.999e-5, "m"), "1.00 \\times 10^{-4}\" m\"");
+  EXPECT_EQ(with_value("{}", 1216.4, "m/s"), "1216\" m/s\"");
+  EXPECT_EQ(with_value("{}", 999.7, "m/s"), "1000\" m/s\"");
+  EXPECT_EQ(with_value("{}", 999999.7, "m"), "1.00 \\times 10^{6}\" m\"");
+  EXPECT_EQ(with_value("{}", 1e-12, "m"), "0\" m\"");
+  EXPECT_EQ(with_value("{:.1}", 2e6, "m"), "2000000.0");
+  // all of a run have the largest's
+  const auto read = [](double value) {
+    std::string all;
+    for (const Span& span : live("{}", value, 0, 7.4e14, "J", 100, {}).spans) all += span.text;
+    return all;
+  };
+  EXPECT_EQ(read(7.4e14), "7.40 × 1014 J");
+  EXPECT_EQ(read(2e12), "0.02 × 1014 J");
+  // between words it is mathematics too
+  EXPECT_EQ(with_value("so {} of $v$", 2e7, "m"), "so $2.00 \\times 10^{7}\" m\"$ of $v$");
+  EXPECT_FALSE(mistake(with_value("{}", 2e7, "m")));
 }
 
 TEST(Formula, UnitsAfterANumberAreUpright) {

@@ -26,7 +26,12 @@ TEST(Latex, SaysWhatTheFormulaSays) {
            std::pair("θ ≤ π", "$\\theta \\le \\pi$"),
            std::pair("\\sin \\omega t", "$\\sin \\omega t$"),
            std::pair("e = 0.8", "$e=0.8$"),
-           std::pair("sin\\theta", "$\\mathrm{sin}\\theta$"),
+           std::pair("sin\\theta", "$\\sin \\theta$"),
+           std::pair("\\$5 for $x$", "\\$5 for $x$"),
+           std::pair("\\dfrac{1}{2}\\overline{AB}", "$\\frac{1}{2}\\overline{AB}$"),
+           std::pair("\\operatorname{div} a", "$\\mathop{\\mathrm{div}}\\nolimits a$"),
+           std::pair("$\\left( \\frac{a}{b} \\right\\}$", "$\\left(\\frac{a}{b}\\right\\}$"),
+           std::pair("\\left( x", "$(\\ x$"),
            std::pair("at $t=0$, 50%", "at $t=0$, 50\\%"),
        })
     EXPECT_EQ(latex(text), written) << text;

@@ -156,6 +156,36 @@ TEST(Layout, LongTitlesGoOnInAnotherLine) {
   EXPECT_LT(made.depictor().view(0).scale, plain);
 }
 
+// The room makes way for the limits of a sum in the caption's last line, whichever that is.
+TEST(Layout, DeepMathematicsOfTheCaptionKeepsOffTheRoom) {
+  for (const double width : {3.0, 12.0}) {
+    Made made = room(width, 4);
+    made.look.title = "Title", made.look.subtitle = "with $\\sum_{i=1}^n \\mathbf{F}_i$ and a few more words";
+    const Layout& layout = made.depictor().layout();
+    ASSERT_EQ(layout.prose.size(), 1u);
+    const auto& [words, at] = layout.prose[0];
+    const double ceiling = made.depictor().view(0).page({0, 4, 0}).y() - kBand * layout.weight;
+    EXPECT_LT(at.y() + words.descent, ceiling) << width;
+  }
+}
+
+// A title that three lines do not hold is smaller, until nothing of it is left out.
+TEST(Layout, TitlesAreSmallerBeforeTheyAreCut) {
+  Made made = room(2, 3);
+  made.look.title =
+      "A very long title of a film that a lecturer wrote in the night before the lecture, about friction and "
+      "all the rest";
+  for (const double aspect : {9.0 / 16, 0.75, 1.0}) {
+    std::string title;
+    double size = 0;
+    for (const Text& text : texts(made.picture(aspect)))
+      if (const Span& span = text.spans[0]; span.face == Face::bold) title += span.text, size = span.size;
+    EXPECT_TRUE(title.ends_with("all the rest")) << title;
+    EXPECT_EQ(title.find("…"), std::string::npos) << title;
+    EXPECT_GT(size, 10) << aspect;
+  }
+}
+
 // At every size of type: what is made smaller to fit does.
 TEST(Layout, SubtitlesThatFindRoomAreNotCut) {
   for (int scale = 50; scale <= 200; scale += 3) {

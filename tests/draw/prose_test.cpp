@@ -38,6 +38,21 @@ TEST(Prose, MistakesHaveTheirColumn) {
   ASSERT_TRUE(wrong);
   EXPECT_EQ(wrong->column, 11u);
   EXPECT_NE(wrong->what.find("\\omega"), std::string::npos);
+  EXPECT_EQ(prose_mistake("é and $\\frac{1}$")->column, 8u);
+  EXPECT_EQ(prose_mistake("the rate $\\omega t")->column, 10u);  // not closed, and no money
+  EXPECT_FALSE(prose_mistake("from $5 to \\$10"));
+}
+
+TEST(Prose, ADollarWithABackslashIsASign) {
+  EXPECT_EQ(in_letters("costs \\$5 or \\$x$"), "costs $5 or $x$");
+  EXPECT_FALSE(contains_mathematics("\\$x\\$"));
+  const Formula set = prose("\\$5 for $x$", Face::regular, 20, {});
+  ASSERT_EQ(set.parts.size(), 2u);
+  EXPECT_EQ(set.parts[0].spans[0].text, "$5 for ");
+  EXPECT_EQ(width_of("\\$5", Face::regular, 20), width_of("$5", Face::regular, 20));
+  List list;
+  add_prose("costs \\$5", Face::regular, 20, {}, {0, 0}, Align::left, list);
+  EXPECT_EQ(list.texts.at(0).spans[0].text, "costs $5");
 }
 
 TEST(Prose, IsAsWideAsItsParts) {

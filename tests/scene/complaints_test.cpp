@@ -442,8 +442,22 @@ TEST(Diagnostics, SpeedsOfAFilmArePositiveAndTheirKeysIncrease) {
 TEST(Diagnostics, UnknownMathematicsIsAnErrorWithItsColumn) {
   refused("[[film.label]]\nat = [1, 1]\ntext = 'a = \\omgea^2 r'",
           "a.toml:3:8: 'text', column 5: unknown command '\\omgea'; did you mean '\\omega'?");
-  refused("[figure]\nformula = '$v = 3'",
-          "a.toml:2:11: 'formula', column 1: '$' without another that ends the mathematics");
+  refused(
+      "[figure]\nformula = '$v = 3'",
+      "a.toml:2:11: 'formula', column 1: '$' without another that ends the mathematics; '\\$' is a dollar");
+}
+
+// Wherever mathematics is written.
+TEST(Diagnostics, MathematicsThatIsNotWholeIsAnErrorWithItsColumn) {
+  const std::string half = "'\\frac' needs what stands above and below: '\\frac{1}{2}'";
+  refused("[[film.label]]\nat = [1, 1]\ntext = 'a = \\frac{1}'", "a.toml:3:8: 'text', column 5: " + half);
+  refused("title = 'energy $\\frac{1}$'", "a.toml:1:9: 'title', column 9: " + half);
+  refused("[[film.caption]]\ntext = '$\\frac{1}$'", "a.toml:2:8: 'text', column 2: " + half);
+  refused("[[film.card]]\ntitle = '$\\frac{1}$'", "a.toml:2:9: 'title', column 2: " + half);
+  refused("[figure]\ntitles = 'a; $\\frac{1}$'", "a.toml:2:10: 'titles', column 5: " + half);
+  refused("[film]\nvary = \"room.gravity=1,2\"\nvary_names = 'a; $\\frac{1}$'",
+          "a.toml:3:14: 'vary_names', column 5: " + half);
+  refused("[[ball]]\nlabel = '\\frac{1}'", "a.toml:2:9: 'label', column 1: " + half);
 }
 
 TEST(Diagnostics, AnAxisHasOneUnit) {

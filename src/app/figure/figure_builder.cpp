@@ -394,7 +394,7 @@ draw::Illustrator FigureBuilder::depictor(const Cell& cell, double width) const 
   }
   const draw::Figure& figure = panel.scene.figure;
   draw::Sheet sheet{.width = width, .above = panels_.size() > 1 ? kLetter : 0};
-  if (figure.axes) sheet.below = draw::kRulerBelow, sheet.left = draw::kRulerLeft;
+  if (figure.axes) sheet.below = draw::kRulerBelow, sheet.left = draw::ruler_left();
   if (figure.low && figure.high) sheet.region = draw::Extent{*figure.low, *figure.high};
   return {panel.cast, look, panel.scene.extent, sheet};
 }

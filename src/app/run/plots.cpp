@@ -319,6 +319,13 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
   return watched;
 }
 
+// plain words as a part of mathematics
+std::string in_quotes(const std::string& words) {
+  std::string all = "\"";
+  for (const char c : words) all += c == '$' ? "\\$" : std::string(1, c);
+  return all + "\"";
+}
+
 // the lines of several runs in one plot, named and coloured by their runs
 void join_plots(const std::vector<Ahead::Run>& runs, std::vector<Watched>& watched) {
   std::vector<draw::Plot>& all = watched.front().plots;
@@ -328,7 +335,7 @@ void join_plots(const std::vector<Ahead::Run>& runs, std::vector<Watched>& watch
       draw::Plot& plot = watched[i].plots[p];
       for (std::size_t k = 0; k < own; ++k) {
         draw::Series& line = plot.lines[k];
-        const std::string &run = runs[i].look.name, words = "\"" + draw::in_letters(run) + "\"";
+        const std::string &run = runs[i].look.name, words = in_quotes(draw::in_letters(run));
         line.label = own > 1 ? line.label + "\", \"" + words : draw::contains_mathematics(run) ? run : words;
         line.color = runs[i].look.color;
         if (i > 0) all[p].lines.push_back(line);

@@ -67,7 +67,7 @@ void draw_legend(const Figure& figure, const Scales& scales, const Palette& colo
     };
     line({left, middle}, {left + length, middle});
     for (const double x : {left, left + length}) line({x, middle - tick}, {x, middle + tick});
-    write(fmt::format("{:g} \"m\"", metres), left + length + 3 * kPoint, colours.ink);
+    write(as_number(metres) + " \"m\"", left + length + 3 * kPoint, colours.ink);
   }
   // from the right: an arrow of each kind
   double x = right;
@@ -83,7 +83,7 @@ void draw_legend(const Figure& figure, const Scales& scales, const Palette& colo
     if (!(kind.scale > 0)) continue;
     const double value = round_below(32 * kPoint / (kind.scale * scale));
     const double length = value * kind.scale * scale;
-    const Formula f = formula(fmt::format("{:g} \"{}\"", value, kind.unit), kSmall, colours.ink);
+    const Formula f = formula(fmt::format("{} \"{}\"", as_number(value), kind.unit), kSmall, colours.ink);
     x -= f.width;
     add(f, {x, baseline}, list);
     x -= 3 * kPoint;

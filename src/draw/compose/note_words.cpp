@@ -29,6 +29,8 @@ constexpr double kOnOutline = 8;    // of each unit of a body's outline under wo
 constexpr double kRailChord = 8;    // the length of a curve's pieces, as words see them
 constexpr double kOnRail = 4;       // of each unit of a curve under words
 constexpr double kOnTrail = 0.8;    // of each unit of a trail or path under words
+constexpr double kFromEdge = 3;     // points: from words to the page's edge at least
+constexpr double kLeaves = 4;       // times as fast as what they name words leave the page with it
 constexpr double kNameCovered = 6;  // as against the cost of other words over something
 
 constexpr std::uint8_t kPlate = 150;  // how much of what lies under the words of a film is covered
@@ -168,6 +170,19 @@ Placing::Candidate Notes::planned(const Word& word, double& leader) const {
   }
   now.leader = led > 0, leader = led;
   return now;
+}
+
+// moved so far that the words do not reach over an edge; those of what leaves the page go with it
+Point Notes::on_page(const Word& word, const Point& center) const {
+  const Rect page = view_.window();
+  const Point half = size(word.set) / 2 + Point(kFromEdge * point_, 0);
+  const auto moved = [](double at, double low, double high, double anchor, double reach) {
+    if (high - low < 2 * reach) return at;
+    const double under = std::max(0.0, low - anchor), over = std::max(0.0, anchor - high);
+    return std::clamp(at, low + reach - kLeaves * under, high - reach + kLeaves * over);
+  };
+  return {moved(center.x(), page.x, page.x + page.width, word.anchor.x(), half.x()),
+          moved(center.y(), page.y, page.y + page.height, word.anchor.y(), half.y())};
 }
 
 // Words stand out against what they cover.
@@ -324,15 +339,15 @@ void Notes::finish() {
   for (const Word& word : words_) {
     Placed& it = placed.emplace_back();
     it.at = how_.plan ? planned(word, it.leader) : placing_.place(size(word.set), word.places);
+    if (film()) it.at.center = on_page(word, it.at.center);
   }
   // plates lie over bodies and lines but under arrows, which stay whole; one kind after another is drawn in
   // few batches
   for (std::size_t i = 0; film() && i < words_.size(); ++i)
     if (covers(words_[i].key)) {
       const Formula& set = words_[i].set;
-      const Point blank(set.blank, 0);
       list_.hang(words_[i].hang);
-      plate(whole(placed[i].at.center) + blank / 2, size(set) - blank, set.color.a);
+      plate(whole(placed[i].at.center), size(set), set.color.a);
     }
   if (film()) draw_arrows(arrows_, inks_, arrow_, colours_.room, list_);
   list_.hang({});

@@ -53,6 +53,7 @@ class Notes {
   std::vector<std::vector<Point>> forms(int body, int corners) const;
   Formula set(const WordKey& key, const std::string& text, double value, std::string_view unit, Color ink);
   Placing::Candidate planned(const Word& word, double& leader) const;
+  Point on_page(const Word& word, const Point& center) const;
   void plate(const Point& center, const Point& size, std::uint8_t strength);
   void lead(const Word& word, const Point& center, double strength);
   static Hold hold(const Word& word, const Point& center);

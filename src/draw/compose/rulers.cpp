@@ -1,7 +1,5 @@
 // Rulers of a sheet, outside the room's hatching: thin lines with ticks at round metres.
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -15,6 +13,7 @@ namespace obscura::draw {
 namespace {
 
 constexpr double kRulerType = 8.5 * kPoint, kTick = 2.5 * kPoint, kLine = 0.6 * kPoint;
+constexpr const char* kUpward = "y / \"m\"";
 constexpr double kOff = 3 * kPoint;        // from the picture
 constexpr double kNameBelow = 9 * kPoint;  // the numbers
 constexpr double kInside = 1 * kPoint;     // of the page's edge
@@ -24,6 +23,12 @@ constexpr double kFarNumbers = 26 * kPoint,
 constexpr double kNameBetween = 2.6 * kRulerType;  // between two numbers that have the name between them
 
 }  // namespace
+
+double ruler_left() {
+  // the name of what is up is wider in some fonts
+  const double name = formula(kUpward, kRulerType, {}).width;
+  return std::max(kRulerLeft, (kOff + kTick + 1.5 * kPoint + name + kInside) / kPoint);
+}
 
 void draw_rulers(const Layout& layout, const View& view, const Palette& colours, List& list) {
   const Rect& w = layout.window;
@@ -44,36 +49,39 @@ void draw_rulers(const Layout& layout, const View& view, const Palette& colours,
          : align > 0.1 ? Align::center
                        : Align::left});
   };
-  const auto number = [](double x) { return fmt::format("{:g}", std::abs(x) < 1e-9 ? 0.0 : x); };
 
   line({left, under}, {right, under});
   const double base = under + kTick + 7.5 * kPoint;
   // the name in a line of its own: beside the numbers it would take the place of the last
   write("x / \"m\"", {(left + right) / 2, base + kNameBelow}, 0.5);
   const double page_left = w.x, page_right = w.x + w.width;
-  for (const double x : ticks(x_low, x_high, int((right - left) / kFarNumbers))) {
-    const double at = view.page({x, 0, 0}).x();
+  const std::vector<double> across = ticks(x_low, x_high, int((right - left) / kFarNumbers));
+  const std::vector<std::string> under_them = as_numbers(across);
+  for (std::size_t i = 0; i < across.size(); ++i) {
+    const double at = view.page({across[i], 0, 0}).x();
     line({at, under}, {at, under + kTick});
-    const double half = formula(number(x), kRulerType, colours.ink).width / 2 + kInside;
-    write(number(x), {std::clamp(at, page_left + half, page_right - half), base}, 0.5);
+    const double half = formula(under_them[i], kRulerType, colours.ink).width / 2 + kInside;
+    write(under_them[i], {std::clamp(at, page_left + half, page_right - half), base}, 0.5);
   }
   line({beside, top}, {beside, bottom});
   // the name between the numbers at the upper end, or in place of the last where they are close
-  const std::vector<double> heights = ticks(y_low, y_high, int((bottom - top) / kNearNumbers));
+  const std::vector<double> up = ticks(y_low, y_high, int((bottom - top) / kNearNumbers));
+  const std::vector<std::string> beside_them = as_numbers(up);
   const auto page_y = [&](double y) { return view.page({0, y, 0}).y(); };
   double name = top + 0.26 * kRulerType;
   bool between = false;
-  if (heights.size() > 1) {
-    const double last = page_y(heights.back()), before = page_y(heights[heights.size() - 2]);
+  if (up.size() > 1) {
+    const double last = page_y(up.back()), before = page_y(up[up.size() - 2]);
     between = before - last > kNameBetween;
     if (between) name = (last + before) / 2;
   }
   const double numbers_end = beside - kTick - 1.5 * kPoint;
-  write("y / \"m\"", {numbers_end, name + 0.24 * kRulerType}, 1);
-  for (const double y : heights) {
-    const double at = page_y(y);
+  write(kUpward, {numbers_end, name + 0.24 * kRulerType}, 1);
+  for (std::size_t i = 0; i < up.size(); ++i) {
+    const double at = page_y(up[i]);
     line({beside, at}, {beside - kTick, at});
-    if (between || at > top + 1.4 * kRulerType) write(number(y), {numbers_end, at + 0.24 * kRulerType}, 1);
+    if (between || at > top + 1.4 * kRulerType)
+      write(beside_them[i], {numbers_end, at + 0.24 * kRulerType}, 1);
   }
 }
 

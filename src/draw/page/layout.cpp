@@ -16,10 +16,12 @@ namespace {
 constexpr double kTitle = 34, kSubtitle = 26.5, kClock = 28.5;   // em
 constexpr double kStrip = 76, kSecondLine = 36, kBaseline = 50;  // heights
 constexpr double kPageMargin = 36, kTitleGap = 18, kClockGap = 44;
+constexpr double kUnderWords = 4;                      // between them and the hatching
 constexpr double kSmallestType = 0.82;                 // before the caption takes another line
 constexpr double kLetters = 0.25;                      // em: how far letters reach below their line
 constexpr double kTitleLine = 42, kSubtitleLine = 34;  // of words in several lines
 constexpr std::size_t kMostRows = 3;
+constexpr double kSmallestTitle = 0.5;  // of its size, before words are left out
 constexpr double kRounding = 1e-9;
 
 }  // namespace
@@ -69,7 +71,10 @@ struct Setting {
   int lines = 1;
   double span = 0;  // width they take
   std::vector<std::string> title{}, subtitle{};
-  double deep = 0;  // page units: how much farther down the title's mathematics reaches than its letters
+  double title_size = 1, subtitle_size = 1;  // smaller where that is what makes them fit
+  double deep = 0;   // page units: how much farther down the title's mathematics reaches than its letters
+  double below = 0;  // how much farther down that of the last line reaches than there is room
+  double more() const { return deep + below; }
 
   /// How high they are, in units of weight.
   double height(double type) const {
@@ -79,9 +84,19 @@ struct Setting {
   }
 };
 
-/// In so many lines at most; what does not go in is left out.
-std::vector<std::string> rows_of(const std::string& words, Face face, double size, double width) {
+/// In so many lines at most: smaller, by `smaller`, if it needs to be; what does not go in then is left out.
+std::vector<std::string> rows_of(const std::string& words, Face face, double size, double width,
+                                 double& smaller) {
+  smaller = 1;
   if (words.empty()) return {};
+  const auto fits = [&](double type) {
+    const std::vector<std::string> rows = wrapped(words, face, type, width);
+    return rows.size() <= kMostRows && std::all_of(rows.begin(), rows.end(), [&](const std::string& row) {
+             return width_of(row, face, type) <= width * (1 + kRounding);
+           });
+  };
+  while (smaller > kSmallestTitle && !fits(smaller * size)) smaller -= 0.05;
+  size *= smaller;
   std::vector<std::string> rows = wrapped(words, face, size, width);
   for (std::size_t i = kMostRows; i < rows.size(); ++i) rows[kMostRows - 1] += " " + rows[i];
   rows.resize(std::min(rows.size(), kMostRows));
@@ -104,8 +119,18 @@ Setting set_words(const Look& look, double weight, double room, double page) {
 
   // one line within the room's width; else the subtitle under the title; a narrow room's caption reaches
   // beyond it; words that are too long for the page go on in another line
-  if (all * kSmallestType <= room)
-    return {std::min(1.0, room / all), 1, room, rows_of(look.title, Face::bold, kTitle * weight, 1e9), {}};
+  const auto reach = [](const std::string& words, Face face, double size) {
+    return contains_mathematics(words) ? prose(words, face, size, {}).descent : 0;
+  };
+  const double spare = (kStrip - kBaseline - kUnderWords) * weight;
+  if (all * kSmallestType <= room) {
+    Setting found{
+        std::min(1.0, room / all), 1, room, wrapped(look.title, Face::bold, kTitle * weight, 1e9), {}};
+    const double unit = found.size * weight;
+    found.below = std::max({0.0, reach(look.title, Face::bold, kTitle * unit) - spare,
+                            reach(look.subtitle, Face::medium, kSubtitle * unit) - spare});
+    return found;
+  }
   const int lines = subtitle > 0 && top > 0 ? 2 : 1;
   const double longest = lines == 2 ? std::max(top, subtitle) : all;
   const double span = std::min(page, std::max(room, longest));
@@ -113,12 +138,19 @@ Setting set_words(const Look& look, double weight, double room, double page) {
   if (longest * kSmallestType > span) found.size = 1;
   const double unit = weight * found.size;
   const double beside = clock > 0 ? clock * found.size + kClockGap * unit : 0;
-  found.title = rows_of(look.title, Face::bold, kTitle * unit, span - beside);
-  if (lines == 2) found.subtitle = rows_of(look.subtitle, Face::medium, kSubtitle * unit, span);
-  if (lines == 2 && !found.title.empty() && contains_mathematics(found.title.back())) {
-    const double size = kTitle * unit;
-    found.deep = std::max(0.0, prose(found.title.back(), Face::bold, size, {}).descent - kLetters * size);
+  found.title = rows_of(look.title, Face::bold, kTitle * unit, span - beside, found.title_size);
+  if (lines == 2)
+    found.subtitle = rows_of(look.subtitle, Face::medium, kSubtitle * unit, span, found.subtitle_size);
+  if (!found.title.empty()) {
+    const double size = found.title_size * kTitle * unit, deep = reach(found.title.back(), Face::bold, size);
+    if (lines == 2)
+      found.deep = std::max(0.0, deep - kLetters * size);
+    else
+      found.below = std::max(0.0, deep - spare);
   }
+  if (!found.subtitle.empty())
+    found.below = std::max(
+        0.0, reach(found.subtitle.back(), Face::medium, found.subtitle_size * kSubtitle * unit) - spare);
   return found;
 }
 
@@ -140,8 +172,9 @@ void write_caption(Layout& layout, const Look& look, const Palette& colours, con
     if (contains_mathematics(words))
       layout.prose.emplace_back(prose(words, face, size, color), Point(x, baseline));
     else if (!words.empty())
-      layout.words.push_back(
-          {{x, baseline}, Align::left, {{.text = words, .face = face, .size = size, .color = color}}});
+      layout.words.push_back({{x, baseline},
+                              Align::left,
+                              {{.text = in_letters(words), .face = face, .size = size, .color = color}}});
   };
 
   if (setting.lines == 1) {
@@ -149,8 +182,9 @@ void write_caption(Layout& layout, const Look& look, const Palette& colours, con
     // alone it may take several lines
     for (std::size_t i = 0; i < std::max<std::size_t>(setting.title.size(), 1); ++i) {
       if (i > 0) baseline += type * kTitleLine;
-      write(setting.title.size() > 1 ? setting.title[i] : title, Face::bold, kTitle * unit, colours.ink,
-            left);
+      const bool several = setting.title.size() > 1;
+      write(several ? setting.title[i] : title, Face::bold,
+            (several ? setting.title_size : 1) * kTitle * unit, colours.ink, left);
     }
     if (look.subtitle.empty()) return;
     const double taken = title.empty() ? 0 : width_of(title, Face::bold, kTitle * unit) + kTitleGap * unit;
@@ -160,12 +194,12 @@ void write_caption(Layout& layout, const Look& look, const Palette& colours, con
   }
   for (std::size_t i = 0; i < setting.title.size(); ++i) {
     if (i > 0) baseline += type * kTitleLine;
-    write(setting.title[i], Face::bold, kTitle * unit, colours.ink, left);
+    write(setting.title[i], Face::bold, setting.title_size * kTitle * unit, colours.ink, left);
   }
   baseline += type * kSecondLine + setting.deep;
   for (std::size_t i = 0; i < setting.subtitle.size(); ++i) {
     if (i > 0) baseline += type * kSubtitleLine;
-    write(setting.subtitle[i], Face::medium, kSubtitle * unit, colours.quiet, left);
+    write(setting.subtitle[i], Face::medium, setting.subtitle_size * kSubtitle * unit, colours.quiet, left);
   }
 }
 
@@ -185,7 +219,9 @@ void draw_words(const Layout& layout, List& list) {
 double width_of(const std::string& words, Face face, double size, bool tabular) {
   if (words.empty()) return 0;
   if (contains_mathematics(words)) return prose(words, face, size, {}).width;
-  return shape({{0, 0}, Align::left, {{.text = words, .face = face, .size = size, .tabular = tabular}}})
+  return shape({{0, 0},
+                Align::left,
+                {{.text = in_letters(words), .face = face, .size = size, .tabular = tabular}}})
       .width;
 }
 
@@ -216,7 +252,9 @@ std::string fitted(const std::string& words, Face face, double size, double widt
     const std::size_t close = phrase.begin + phrase.text.size();
     if (phrase.mathematics) ends.push_back(close + 1);
     for (std::size_t i = phrase.begin + 1; i <= close && !phrase.mathematics; ++i)
-      if (i == words.size() || (static_cast<unsigned char>(words[i]) & 0xC0) != 0x80) ends.push_back(i);
+      if (i == words.size() ||
+          ((static_cast<unsigned char>(words[i]) & 0xC0) != 0x80 && words[i - 1] != '\\'))
+        ends.push_back(i);
   }
   auto with_ellipsis = [&](std::size_t characters) {
     std::size_t end = characters == 0 ? 0 : ends[characters - 1];
@@ -270,7 +308,7 @@ double lay_caption(Layout& layout, const Look& look) {
   const Setting setting = set_words(look, w, page, page);
   write_caption(layout, look, palette(look.theme), setting, (layout.width - page) / 2,
                 (layout.width + page) / 2, 0);
-  return w * setting.height(look.type_scale) + setting.deep;
+  return w * setting.height(look.type_scale) + setting.more();
 }
 
 Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camera, const Extent& extent,
@@ -306,15 +344,15 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
     auto room = [&] { return world.closed && still ? scale(strip) * size.x() + 2 * w * kWallLine : page; };
     strip = w * look.type_scale * kStrip;
     setting = set_words(look, w, room(), page);
-    for (int k = 0; k < 3 && setting.height(look.type_scale) * w + setting.deep > strip; ++k) {
+    for (int k = 0; k < 3 && setting.height(look.type_scale) * w + setting.more() > strip; ++k) {
       const int lines = setting.lines;
-      strip = w * setting.height(look.type_scale) + setting.deep;
+      strip = w * setting.height(look.type_scale) + setting.more();
       setting = set_words(look, w, room(), page);
       // a lower room is narrower: what took two lines does so still
       if (lines != 2 || setting.lines == 2) continue;
       setting.lines = 2;
-      setting.subtitle =
-          rows_of(look.subtitle, Face::medium, kSubtitle * w * look.type_scale * setting.size, setting.span);
+      setting.subtitle = rows_of(look.subtitle, Face::medium, kSubtitle * w * look.type_scale * setting.size,
+                                 setting.span, setting.subtitle_size);
     }
   }
   layout.scale = scale(strip);

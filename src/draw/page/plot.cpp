@@ -31,8 +31,6 @@ const std::vector<std::vector<double>> kDashes = {{},       {5, 2.2},  {1.2, 1.8
 constexpr double kLeft = 0.05;  // of the width: a line that ends so far from the right is named where it ends
 constexpr int kMostDecades = 7;  // with a number each
 
-std::string number(double x) { return fmt::format("{:g}", std::abs(x) < 1e-12 ? 0.0 : x); }
-
 std::string power(int exponent) {
   return exponent == 0 ? "1" : exponent == 1 ? "10" : fmt::format("10^{{{}}}", exponent);
 }
@@ -57,7 +55,7 @@ Ticks decades(double low, double high) {
       const bool told = digit == 1 ? (e - first) % step == 0 : few && plain && (digit == 2 || digit == 5);
       if (told) {
         all.marks.push_back(x);
-        all.numbers.push_back(plain ? number(x) : power(e));
+        all.numbers.push_back(plain ? as_number(x) : power(e));
       } else if (digit == 1 || step == 1) {
         all.between.push_back(x);
       }
@@ -68,7 +66,7 @@ Ticks decades(double low, double high) {
 
 Ticks numbered(std::vector<double> marks) {
   Ticks all{std::move(marks), {}};
-  for (const double mark : all.marks) all.numbers.push_back(number(mark));
+  all.numbers = as_numbers(all.marks);
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "draw/picture/formula_text.h"
@@ -19,7 +20,11 @@ constexpr double kScript = 0.7, kSub = -0.2, kSuper = 0.36;  // size and rise of
 constexpr double kFraction = 0.78;  // size of what a fraction is made of
 constexpr double kAxis = 0.25;      // height of its bar, em
 constexpr double kBar = 0.05, kAroundBar = 0.13;
-constexpr double kBig = 1.45;  // size of a sum's sign
+constexpr double kBig = 1.45;      // size of a sum's sign
+constexpr double kLimit = 0.12;    // between it and its limits, em
+constexpr double kThin = 0.17;     // a thin space, em
+constexpr double kNotHigh = 1.15;  // times as high as they are what is between brackets may be
+constexpr double kTallest = 3.5;   // how many times as high as they are brackets grow
 
 // Greek small letters are italic, as Latin ones are
 bool italic(std::string_view c) {
@@ -41,55 +46,25 @@ bool deep(std::string_view c) {
          std::find(std::begin(greek), std::end(greek), c) != std::end(greek);
 }
 
-// how many letters two words differ by, swaps counted once
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i)
-    for (std::size_t k = 0; k <= b.size(); ++k) {
-      if (i == 0 || k == 0) {
-        d[i][k] = i + k;
-        continue;
-      }
-      d[i][k] = std::min({d[i - 1][k] + 1, d[i][k - 1] + 1, d[i - 1][k - 1] + (a[i - 1] != b[k - 1])});
-      if (i > 1 && k > 1 && a[i - 1] == b[k - 2] && a[i - 2] == b[k - 1])
-        d[i][k] = std::min(d[i][k], d[i - 2][k - 2] + 1);
-    }
-  return d[a.size()][b.size()];
-}
-
-// the known command that is most like a word
-std::string nearest(std::string_view word) {
-  std::string best;
-  std::size_t least = 3;
-  const auto offer = [&](std::string_view name) {
-    if (const std::size_t d = distance(word, name); d < least && d < name.size()) least = d, best = name;
-  };
-  for (const formulas::Name& each : formulas::kNames) offer(each.word);
-  for (const formulas::Name& each : formulas::kLarge) offer(each.word);
-  for (const auto each : formulas::kFunctions) offer(each);
-  for (const auto each : formulas::kAccents) offer(each);
-  for (const auto each : formulas::kForms) offer(each);
-  return best;
-}
-
 class Setter {
  public:
-  Setter(std::string_view text, double size, Color color) : text_(text) {
+  // `room`: em before the number
+  Setter(std::string_view text, double size, Color color, double room = 0) : text_(text), room_(room) {
     out_.size = size;
     out_.color = color;
   }
 
   Formula set() {
-    if (text_.find('$') == text_.npos) {
+    if (formulas::dollar(text_, 0) == text_.npos) {
       run(text_, 1, 0);
     } else {
       // words, and mathematics between dollars
       for (std::size_t i = 0; i <= text_.size();) {
-        const std::size_t end = std::min(text_.find('$', i), text_.size());
+        const std::size_t end = std::min(formulas::dollar(text_, i), text_.size());
         if (latex_)
           run(text_.substr(i, end - i), 1, 0);
         else
-          put(text_.substr(i, end - i), Face::math, 1, 0);
+          put(formulas::plain(text_.substr(i, end - i)), Face::math, 1, 0);
         latex_ = !latex_, i = end + 1;
       }
     }
@@ -104,7 +79,7 @@ class Setter {
 
   // set alone, to be placed as a whole
   Formula inner(std::string_view text, double scale) const {
-    Setter setter(text, scale * out_.size, out_.color);
+    Setter setter(text, scale * out_.size, out_.color, room_);
     setter.bold_ = bold_, setter.latex_ = latex_;
     setter.run(text, 1, 0);
     if (!setter.out_.empty()) setter.out_.width = setter.width();
@@ -165,17 +140,17 @@ class Setter {
     setter.put(symbol, Face::math, 1, 0);
     Formula sign = std::move(setter.out_);
     sign.width = setter.width_of(sign);
-    sign.ascent = 0.72 * kBig * em, sign.descent = 0.2 * kBig * em;
+    std::tie(sign.ascent, sign.descent) = ink_of({{0, 0}, Align::left, sign.spans});
     const double from = width() + 0.06 * em, wide = std::max({sign.width, below.width, above.width});
     const double base = (rise - 0.16 * scale) * out_.size;
     const double high = base + sign.ascent, low = base - sign.descent;
     place(std::move(sign), {from + (wide - sign.width) / 2, -base});
     if (!below.empty()) {
-      const Point at(from + (wide - below.width) / 2, -low + 0.1 * em + below.ascent);
+      const Point at(from + (wide - below.width) / 2, -low + kLimit * em + below.ascent);
       place(std::move(below), at);
     }
     if (!above.empty()) {
-      const Point at(from + (wide - above.width) / 2, -high - 0.08 * em - above.descent);
+      const Point at(from + (wide - above.width) / 2, -high - kLimit * em - above.descent);
       place(std::move(above), at);
     }
     pending_ += wide + 0.18 * em;
@@ -239,18 +214,16 @@ class Setter {
       if (!latex_ && !number_ && formulas::latin(c)) units = std::max(units, formulas::units_end(text, i));
       if (c == kNumber || c == kNumberEnd) {
         number_ = c == kNumber, ++i;
+        if (number_) pending_ += room_ * scale * out_.size;
       } else if (c == '*') {
         bold_ = !bold_, ++i;
       } else if (c == '_' || c == '^') {
-        ++i;
-        const bool bold = std::exchange(bold_, false);
-        run(formulas::argument(text, i, latex_), kScript * scale, rise + scale * (c == '_' ? kSub : kSuper));
-        bold_ = bold;
+        script(c, text, ++i, scale, rise);
       } else if (c == '\'') {
         put("′", Face::math, scale, rise), ++i;
       } else if (c == '"') {
         const std::size_t end = std::min(text.find('"', i + 1), text.size());
-        put(text.substr(i + 1, end - i - 1), Face::math, scale, rise);
+        put(formulas::plain(text.substr(i + 1, end - i - 1)), Face::math, scale, rise);
         i = std::min(end + 1, text.size());
       } else if (c == '\\') {
         name(text, ++i, scale, rise);
@@ -260,7 +233,10 @@ class Setter {
         letter(text.substr(i++, 1), scale, rise);
       } else if (const auto [end, letters] = formulas::word(text, i); letters > 0 && !latex_) {
         if (letters >= formulas::kWord || int(end - i) > letters || i < units) {
-          put(text.substr(i, end - i), Face::math, scale, rise);
+          const std::string_view word = text.substr(i, end - i);
+          put(word, Face::math, scale, rise);
+          if (end < text.size() && text[end] == '\\' && formulas::among(formulas::kFunctions, word))
+            pending_ += room_behind_function(text, end) * scale * out_.size;
         } else {
           for (std::size_t k = i; k < end; ++k) letter(text.substr(k, 1), scale, rise);
         }
@@ -273,6 +249,103 @@ class Setter {
     }
   }
 
+  void script(char sign, std::string_view text, std::size_t& i, double scale, double rise) {
+    const bool bold = std::exchange(bold_, false);
+    const std::string_view argument = formulas::argument(text, i, latex_);
+    const double size = kScript * scale, at = rise + scale * (sign == '_' ? kSub : kSuper);
+    if (argument == "*")
+      put(argument, Face::math, size, at);
+    else
+      run(argument, size, at);
+    bold_ = bold;
+  }
+
+  // em: a thin space before a letter, none before a bracket or what has room of its own
+  double room_behind_function(std::string_view text, std::size_t i) const {
+    while (latex_ && i < text.size() && text[i] == ' ') ++i;
+    const std::string_view rest = text.substr(std::min(i, text.size()));
+    if (rest.empty()) return 0;
+    if (rest[0] == '\\') {
+      const std::size_t end =
+          std::size_t(std::find_if_not(rest.begin() + 1, rest.end(), formulas::latin) - rest.begin());
+      const std::string_view word = rest.substr(1, end - 1);
+      return word.empty() || word == "left" || word == "right" || word == "quad" ? 0 : kThin;
+    }
+    static constexpr std::string_view kNone = " ()[]}|,;:.=<>+-/'^_";
+    return kNone.find(rest[0]) != kNone.npos ? 0 : kThin;
+  }
+
+  // an upright name, its scripts, and the room around both
+  void function(std::string_view word, std::string_view text, std::size_t& i, bool operand, double scale,
+                double rise) {
+    // behind a letter or a digit: a product
+    const bool behind = !out_.empty() && !(pending_ > 0) && (latex_ ? operand : ends_a_factor());
+    if (behind) pending_ += kThin * scale * out_.size;
+    put(word, Face::math, scale, rise);
+    while (i < text.size() && (text[i] == '^' || text[i] == '_')) {
+      const char sign = text[i++];
+      script(sign, text, i, scale, rise);
+    }
+    pending_ += room_behind_function(text, i) * scale * out_.size;
+  }
+  // whether a letter or a digit was set last
+  bool ends_a_factor() const {
+    if (out_.spans.empty()) return false;
+    const std::string& text = out_.spans.back().text;
+    std::size_t last = text.size() - 1;
+    while (last > 0 && (static_cast<unsigned char>(text[last]) & 0xC0) == 0x80) --last;
+    return italic(std::string_view(text).substr(last)) || (text[last] >= '0' && text[last] <= '9');
+  }
+
+  // brackets as high as what is between them
+  void brackets(std::string_view text, std::size_t& i, double scale, double rise) {
+    const auto signs_at = [&](std::size_t& at) {
+      while (at < text.size() && text[at] == ' ') ++at;
+      const std::string_view sign = formulas::bracket(text, at);
+      at += sign.size();
+      return sign == "." ? std::string_view() : sign;
+    };
+    const std::string_view left = signs_at(i);
+    const std::size_t end = formulas::right_of(text, i);
+    if (end == text.npos) return bracket(left, 0, scale, rise);
+    const std::string_view within = text.substr(i, end - i);
+    i = end + std::string_view("\\right").size();
+    const std::string_view right = signs_at(i);
+
+    const Formula inside = inner(within, scale);
+    const double axis = scale * kAxis * out_.size;
+    const double half = std::max(inside.ascent - axis, inside.descent + axis);
+    bracket(left, half, scale, rise);
+    operand_ = false;
+    run(within, scale, rise);
+    bracket(right, half, scale, rise);
+    operand_ = true;
+  }
+  // with half of its height on either side of the axis, on which a fraction's bar is
+  void bracket(std::string_view sign, double half, double scale, double rise) {
+    if (sign.empty()) return;
+    if (sign.size() > 1 && sign[0] == '\\') {
+      const formulas::Name* name = formulas::entry(formulas::kNames, sign.substr(1));
+      sign = name ? name->symbol : sign.substr(1);
+    }
+    const double em = scale * out_.size;
+    const auto [above, below] =
+        ink_of({{0, 0}, Align::left, {{.text = std::string(sign), .face = Face::math, .size = em}}});
+    const double own = std::max((above + below) / 2, 0.1 * em);
+    if (half <= kNotHigh * own) return put(sign, Face::math, scale, rise);
+    if (sign == "|") {
+      // as thin as a fraction's
+      const double from = width() + 0.12 * em, axis = (rise + scale * kAxis) * out_.size;
+      out_.lines.push_back({{{from, -axis - half}, {from, -axis + half}}, kBar * em});
+      out_.ascent = std::max(out_.ascent, axis + half);
+      out_.descent = std::max(out_.descent, half - axis);
+      pending_ += 0.24 * em;
+      return;
+    }
+    const double grown = std::min(1.06 * half / own, kTallest);
+    put(sign, Face::math, grown * scale, rise + scale * kAxis - grown * (above - below) / 2 / out_.size);
+  }
+
   void name(std::string_view text, std::size_t& i, double scale, double rise) {
     const std::size_t from = i;
     while (i < text.size() && formulas::latin(text[i])) ++i;
@@ -280,7 +353,7 @@ class Setter {
     if (word.empty() && i < text.size()) {
       // "\,": a space; "\{": the sign itself
       const char c = text[i++];
-      const double space = c == ',' ? 0.17 : c == ':' ? 0.22 : c == ';' ? 0.28 : c == ' ' ? 0.25 : 0;
+      const double space = c == ',' ? kThin : c == ':' ? 0.22 : c == ';' ? 0.28 : c == ' ' ? 0.25 : 0;
       if (space > 0)
         pending_ += space * scale * out_.size;
       else if (c != '!')
@@ -291,7 +364,7 @@ class Setter {
     const auto skip = [&] {
       while (i < text.size() && text[i] == ' ') ++i;
     };
-    operand_ = true;
+    const bool operand = std::exchange(operand_, true);
     if (formulas::among(formulas::kAccents, word)) {
       skip();
       const double before = width();
@@ -308,7 +381,22 @@ class Setter {
       out_.ascent = std::max(out_.ascent, top + (which >= 4 ? 0.18 : 0.08) * em);
       return;
     }
-    if (word == "frac") {
+    if (word == "overline") {
+      const std::string_view text_under = formulas::argument(text, i, latex_);
+      const Formula under = inner(text_under, scale);
+      const double before = width(), em = scale * out_.size;
+      run(text_under, scale, rise);
+      const double top = rise * out_.size + under.ascent + 0.1 * em;
+      out_.overs.push_back({Formula::Over::bar, before + 0.02 * em, width() + 0.02 * em, top});
+      out_.ascent = std::max(out_.ascent, top + 0.08 * em);
+      return;
+    }
+    if (word == "operatorname") {
+      skip();
+      const std::string_view called = formulas::argument(text, i, latex_);
+      return function(called, text, i, operand, scale, rise);
+    }
+    if (formulas::fraction(word)) {
       skip();
       const std::string_view above = formulas::argument(text, i, latex_);
       skip();
@@ -324,7 +412,7 @@ class Setter {
     }
     if (word == "text" || word == "mathrm") {
       skip();
-      return put(formulas::argument(text, i, latex_), Face::math, scale, rise);
+      return put(formulas::plain(formulas::argument(text, i, latex_)), Face::math, scale, rise);
     }
     if (word == "mathbf" || word == "boldsymbol" || word == "bm") {
       skip();
@@ -337,20 +425,11 @@ class Setter {
       skip();
       return put(formulas::argument(text, i, latex_), Face::math_italic, scale, rise);
     }
-    // brackets keep their size
-    if (word == "left" || word == "right") {
-      if (i < text.size() && text[i] == '.') ++i;
-      return;
-    }
+    if (word == "left") return brackets(text, i, scale, rise);
+    if (word == "right") return;
     if (const formulas::Name* sign = formulas::entry(formulas::kLarge, word))
       return large(sign->symbol, word.ends_with("int"), text, i, scale, rise);
-    if (formulas::among(formulas::kFunctions, word)) {
-      const double room = latex_ ? 0.17 * scale * out_.size : 0;
-      if (room > 0 && !out_.empty()) pending_ += room;
-      put(word, Face::math, scale, rise);
-      pending_ += room;
-      return;
-    }
+    if (formulas::among(formulas::kFunctions, word)) return function(word, text, i, operand, scale, rise);
     if (const formulas::Name* symbol = formulas::entry(formulas::kNames, word))
       return letter(symbol->symbol, scale, rise);
     put("\\", Face::math, scale, rise);
@@ -358,6 +437,7 @@ class Setter {
   }
 
   std::string_view text_;
+  double room_;
   Formula out_;
   double pending_ = 0;  // page units before what comes next
   bool bold_ = false, number_ = false;
@@ -431,30 +511,6 @@ void add(const Formula& f, const Point& at, List& list, const Hold& hold) {
         break;
     }
   }
-}
-
-std::optional<FormulaMistake> mistake(std::string_view text) {
-  bool quoted = false;
-  int dollars = 0;
-  std::size_t opened = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '"') quoted = !quoted;
-    if (quoted) continue;
-    if (text[i] == '$') ++dollars, opened = i;
-    if (text[i] != '\\') continue;
-    const std::size_t from = ++i;
-    while (i < text.size() && formulas::latin(text[i])) ++i;
-    const std::string_view word = text.substr(from, i - from);
-    if (word.empty()) continue;
-    --i;
-    if (formulas::known(word)) continue;
-    FormulaMistake found{from, fmt::format("unknown command '\\{}'", word)};
-    if (const std::string near = nearest(word); !near.empty())
-      found.what += fmt::format("; did you mean '\\{}'?", near);
-    return found;
-  }
-  if (dollars % 2 != 0) return FormulaMistake{opened + 1, "'$' without another that ends the mathematics"};
-  return {};
 }
 
 namespace {
@@ -565,9 +621,18 @@ std::string spaced(std::string_view unit) {
   return unit.empty() ? "" : fmt::format("\"{}{}\"", unit == "°" ? "" : " ", unit);
 }
 
+// a number with three digits that count has a power of ten from here up, and below that
+constexpr double kLarge = 999'999.5, kSmall = 1e-4, kZero = 1e-9;
+
+// the exponent of a number that has a power of ten
+std::optional<int> power_of_ten(double size) {
+  if (!std::isfinite(size) || size == 0 || (size >= kSmall && size < kLarge)) return {};
+  return int(std::floor(std::log10(size) + 1e-9));
+}
+
 // how many digits after the point give three that count
 int three_digits(double value) {
-  if (!(value > 1e-9)) return 2;
+  if (!(value > kZero)) return 2;
   int power = int(std::floor(std::log10(value)));
   // 0.9999 is shown as 1.00
   if (value + 0.5 * std::pow(10, power - 2) >= std::pow(10, power + 1)) ++power;
@@ -581,26 +646,57 @@ std::string number(double value, int decimals) {
   return text;
 }
 
-// the same with so much room before it
-Formula set_back(Formula set, double room) {
-  if (!set.spans.empty()) set.spans.front().lead += room;
-  for (Formula::Over& over : set.overs) over.from += room, over.to += room;
-  for (Formula::Line& line : set.lines)
-    for (Point& point : line.points) point.x() += room;
-  for (Point& place : set.places) place.x() += room;
-  set.width += room, set.blank += room;
-  return set;
+std::string times_power(int exponent) { return fmt::format(" \\times 10^{{{}}}", exponent); }
+
+// a text with its value and unit in the place of its slot
+std::string filled(const std::string& text, const ValueSlot& slot, const std::string& value,
+                   std::string_view unit) {
+  const std::string before = text.substr(0, slot.begin), rest = text.substr(slot.end);
+  // between words of a text with dollars it is mathematics of its own
+  bool inside = false, outside = false;
+  for (std::size_t at = formulas::dollar(text, 0); at != text.npos; at = formulas::dollar(text, at + 1)) {
+    outside = true;
+    if (at < slot.begin) inside = !inside;
+  }
+  outside = outside && !inside;
+  const std::string with_unit = slot.decimals ? value : value + spaced(unit);
+  if (outside) return before + "$" + with_unit + "$" + rest;
+  return before + with_unit + (slot.decimals ? after(rest, unit) : rest);
 }
 
 }  // namespace
 
+std::string as_number(double value, std::optional<int> exponent) {
+  if (!exponent) exponent = power_of_ten(std::abs(value));
+  if (value == 0 || !exponent) return fmt::format("{:g}", value == 0 ? 0.0 : value);
+  return fmt::format("{:g}", value / std::pow(10, *exponent)) + times_power(*exponent);
+}
+
+std::vector<std::string> as_numbers(const std::vector<double>& values) {
+  double most = 0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  const auto shown = [&](double value) { return std::abs(value) < kZero * most ? 0 : value; };
+  const bool powers = std::any_of(values.begin(), values.end(), [&](double value) {
+    return power_of_ten(std::abs(shown(value))).has_value();
+  });
+  const auto exponent = powers ? std::optional(int(std::floor(std::log10(most) + 1e-9))) : std::nullopt;
+  std::vector<std::string> all;
+  for (const double value : values) all.push_back(as_number(shown(value), exponent));
+  return all;
+}
+
 std::string with_value(const std::string& text, double value, std::string_view unit) {
   const auto slot = value_slot(text);
   if (!slot) return text;
-  const std::string before = text.substr(0, slot->begin), rest = text.substr(slot->end);
-  if (slot->decimals) return before + number(value, *slot->decimals) + after(rest, unit);
-  const double shown = std::abs(value) < 1e-9 ? 0 : value;
-  return before + fmt::format("{:.3g}", shown) + spaced(unit) + rest;
+  if (slot->decimals) return filled(text, *slot, number(value, *slot->decimals), unit);
+  const double shown = std::abs(value) < kZero ? 0 : value, size = std::abs(shown);
+  auto exponent = power_of_ten(size);
+  if (exponent && size / std::pow(10, *exponent) >= 9.995) ++*exponent;  // 9.999 is shown as 10.0
+  return filled(text, *slot,
+                exponent        ? number(shown / std::pow(10, *exponent), 2) + times_power(*exponent)
+                : size >= 999.5 ? number(shown, 0)
+                                : fmt::format("{:.3g}", shown),
+                unit);
 }
 
 Formula live(const std::string& text, double value, double low, double high, std::string_view unit,
@@ -608,16 +704,20 @@ Formula live(const std::string& text, double value, double low, double high, std
   const auto slot = value_slot(text);
   if (!slot) return formula(text, size, color);
   const double most = std::max(std::abs(low), std::abs(high));
-  const int digits = slot->decimals.value_or(three_digits(most));
+  // one power of ten for the whole run
+  const auto exponent = slot->decimals || most < kZero ? std::optional<int>() : power_of_ten(most);
+  const double part = exponent ? std::pow(10, *exponent) : 1;
+  const int digits = slot->decimals ? *slot->decimals : exponent ? 2 : three_digits(most);
   const auto width = [&](double x) {
-    return formula(kNumber + number(x, digits) + kNumberEnd, size, color).width;
+    return formula(kNumber + number(x / part, digits) + kNumberEnd, size, color).width;
   };
-  const std::string shown = number(value, digits);
   const double own = width(value), widest = std::max({own, width(low), width(high)});
-  std::string rest = text.substr(slot->end);
-  rest = slot->decimals ? after(rest, unit) : spaced(unit) + rest;
-  return set_back(formula(text.substr(0, slot->begin) + kNumber + shown + kNumberEnd + rest, size, color),
-                  widest - own);
+  const std::string shown =
+      kNumber + number(value / part, digits) + kNumberEnd + (exponent ? times_power(*exponent) : "");
+  const std::string whole = filled(text, *slot, shown, unit);
+  Formula set = Setter(whole, size, color, (widest - own) / size).set();
+  set.source = whole;
+  return set;
 }
 
 void fade(Formula& formula, double strength) {

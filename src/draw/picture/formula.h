@@ -34,7 +34,6 @@ struct Formula {
   std::string source;          // the text that it sets; of the whole alone
   double size = 0;
   double width = 0, ascent = 0, descent = 0;  // page units
-  double blank = 0;                           // of the width, at the left: room for more digits
   Color color{};
 
   bool empty() const { return spans.empty() && parts.empty(); }
@@ -81,12 +80,22 @@ struct ValueSlot {
 /// None: the label shows no value.
 std::optional<ValueSlot> value_slot(std::string_view text);
 
-/// `text` with its slot replaced by a value. What follows "{:.2}" and is the unit is set upright.
+/// A number as mathematics: up to six digits, from a million up and below 1e-4 with a power of ten:
+/// "7.4 \times 10^{14}". `exponent`: that of the power.
+std::string as_number(double value, std::optional<int> exponent = {});
+
+/// The numbers of one axis: if one of them has a power of ten all have that of the largest.
+std::vector<std::string> as_numbers(const std::vector<double>& values);
+
+/// `text` with its slot replaced by a value. "{}" has three digits that count, those of a thousand up to a
+/// million all before the point; beyond, and below 1e-4, it has a power of ten. What follows "{:.2}" and is
+/// the unit is set upright.
 std::string with_value(const std::string& text, double value, std::string_view unit);
 
 /// The same for a value that goes from `low` to `high` while the label stays where it is: "{}" has as many
-/// digits after the point as give the largest three digits. All labels are as wide as the longest and end
-/// where that ends: digits and unit stay where they are, and what the label begins with stands beside them.
+/// digits after the point as give the largest three digits, and its power of ten. Room is left for the
+/// longest number: all labels are equally wide, and nothing in them moves but the number's first digits and
+/// its sign.
 Formula live(const std::string& text, double value, double low, double high, std::string_view unit,
              double size, Color color);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -36,8 +37,12 @@ inline constexpr std::string_view kFunctions[] = {"sin",    "cos",  "tan",  "cot
                                                   "arctan", "sinh", "cosh", "tanh", "log",    "ln",
                                                   "exp",    "min",  "max",  "lim",  "det",    "sgn"};
 inline constexpr std::string_view kAccents[] = {"bar", "vec", "dot", "ddot", "hat", "tilde"};
-inline constexpr std::string_view kForms[] = {"frac",       "sqrt", "text",   "mathrm", "mathbf",
-                                              "boldsymbol", "bm",   "mathit", "left",   "right"};
+inline constexpr std::string_view kForms[] = {"frac",   "dfrac",  "tfrac",      "sqrt",        "text",
+                                              "mathrm", "mathbf", "boldsymbol", "bm",          "mathit",
+                                              "left",   "right",  "overline",   "operatorname"};
+
+/// The three that are a fraction.
+inline bool fraction(std::string_view word) { return word == "frac" || word == "dfrac" || word == "tfrac"; }
 
 inline const Name* entry(std::span<const Name> names, std::string_view word) {
   const auto found =
@@ -109,39 +114,85 @@ inline std::size_t units_end(std::string_view text, std::size_t i) {
   }
 }
 
+/// Where the brace at i is closed; "\{" and "\}" are signs.
+inline std::size_t closing(std::string_view text, std::size_t i) {
+  std::size_t depth = 0;
+  for (; i < text.size(); ++i) {
+    if (text[i] == '\\') {
+      ++i;
+      continue;
+    }
+    if (text[i] == '{') ++depth;
+    if (text[i] == '}' && --depth == 0) return i;
+  }
+  return text.npos;
+}
+
 /// The argument of a script or an accent at text[i], which goes on behind it: {...}, or one symbol. Where
 /// spaces count (not `latex`), a word is one.
 inline std::string_view argument(std::string_view text, std::size_t& i, bool latex) {
+  while (latex && i < text.size() && text[i] == ' ') ++i;
   if (i < text.size() && text[i] == '{') {
-    std::size_t depth = 0, from = i + 1;
-    for (; i < text.size(); ++i) {
-      if (text[i] == '{') ++depth;
-      if (text[i] == '}' && --depth == 0) break;
-    }
-    const std::string_view inner = text.substr(from, i - from);
-    i = std::min(i + 1, text.size());
-    return inner;
+    const std::size_t from = i + 1, end = std::min(closing(text, i), text.size());
+    i = std::min(end + 1, text.size());
+    return text.substr(from, end - from);
   }
   const std::size_t from = i;
   if (i < text.size() && text[i] == '\\') {
     ++i;
     while (i < text.size() && latin(text[i])) ++i;
+    if (i == from + 1 && i < text.size()) ++i;  // "\{"
+  } else if (i < text.size() && text[i] == '"') {
+    i = std::min(text.find('"', i + 1), text.size() - 1) + 1;  // v_"max"
   } else if (i < text.size() && latin(text[i]) && latex) {
     ++i;
   } else if (const std::size_t end = word(text, i).first; end > i) {
     i = end;  // "v_center"
   } else if (i < text.size()) {
-    i += length_of(text[i]);
+    i = std::min(i + length_of(text[i]), text.size());
   }
   return text.substr(from, i - from);
 }
 
-/// Where the brace at i is closed.
-inline std::size_t closing(std::string_view text, std::size_t i) {
-  std::size_t depth = 0;
+/// Where the next dollar is that begins or ends mathematics: "\$" is a sign. None: npos.
+inline std::size_t dollar(std::string_view text, std::size_t i) {
   for (; i < text.size(); ++i) {
-    if (text[i] == '{') ++depth;
-    if (text[i] == '}' && --depth == 0) return i;
+    if (text[i] == '$') return i;
+    if (text[i] == '\\') ++i;
+  }
+  return text.npos;
+}
+
+/// Plain words as they are shown: "\$" is a dollar.
+inline std::string plain(std::string_view words) {
+  std::string shown(words);
+  for (std::size_t at = shown.find("\\$"); at != shown.npos; at = shown.find("\\$", at)) shown.erase(at++, 1);
+  return shown;
+}
+
+/// The bracket at text[i], behind \left or \right: "(", "\{", "\langle", "." for none. Empty: there is none.
+inline std::string_view bracket(std::string_view text, std::size_t i) {
+  static constexpr std::string_view kBrackets[] = {"(",   ")",        "[",        "]", "|", "/", ".", "\\{",
+                                                   "\\}", "\\langle", "\\rangle", "⟨", "⟩", "<", ">", "‖"};
+  for (const std::string_view each : kBrackets)
+    if (text.substr(std::min(i, text.size())).starts_with(each)) return each;
+  return {};
+}
+
+/// Where the \right is that belongs to a \left before text[i]. None: npos.
+inline std::size_t right_of(std::string_view text, std::size_t i) {
+  std::size_t depth = 0;
+  while (i < text.size()) {
+    if (text[i] != '\\') {
+      ++i;
+      continue;
+    }
+    const std::size_t from = i++;
+    while (i < text.size() && latin(text[i])) ++i;
+    const std::string_view command = text.substr(from + 1, i - from - 1);
+    if (command.empty()) ++i;
+    if (command == "left") ++depth;
+    if (command == "right" && depth-- == 0) return from;
   }
   return text.npos;
 }

@@ -133,6 +133,7 @@ class LatexWriter {
     } else if (c == '_' || c == '^') {
       ++i;
       const std::string_view argument = formulas::argument(text, i, latex_);
+      if (argument == "*") return script(c == '_', "*");
       // "^\circ", "^{'}": it is up already
       std::string written = inner(argument, false);
       if (written.starts_with("^{") && written.find('}') == written.size() - 1)
@@ -155,6 +156,10 @@ class LatexWriter {
       units_ = std::max(units_, formulas::units_end(text, i));
       if (int(end - i) > letters)
         words(text.substr(i, end - i));
+      else if (end < text.size() && text[end] == '\\' &&
+               formulas::among(formulas::kFunctions, text.substr(i, end - i)) &&
+               text.substr(i, end - i) != "sgn")
+        put(fmt::format("\\{} ", text.substr(i, end - i)));
       else if (letters >= formulas::kWord || i < units_)
         put(fmt::format("\\mathrm{{{}}}", text.substr(i, end - i)));
       else
@@ -168,7 +173,7 @@ class LatexWriter {
   }
 
   void words(std::string_view text) {
-    if (!text.empty()) put(fmt::format("\\obscuratext{{{}}}", latex_text(text)));
+    if (!text.empty()) put(fmt::format("\\obscuratext{{{}}}", latex_text(formulas::plain(text))));
   }
 
   void name(std::string_view text, std::size_t& i) {
@@ -195,7 +200,11 @@ class LatexWriter {
     };
     if (formulas::among(formulas::kAccents, word)) {
       put(fmt::format("\\{}{{{}}}", word, inner(argument(), bold_)));
-    } else if (word == "frac") {
+    } else if (word == "overline") {
+      put(fmt::format("\\overline{{{}}}", inner(argument(), bold_)));
+    } else if (word == "operatorname") {
+      put(fmt::format("\\mathop{{\\mathrm{{{}}}}}\\nolimits ", latex_text(argument())));
+    } else if (formulas::fraction(word)) {
       const std::string above = inner(argument(), bold_), below = inner(argument(), bold_);
       put(fmt::format("\\frac{{{}}}{{{}}}", above, below));
     } else if (word == "sqrt") {
@@ -212,7 +221,20 @@ class LatexWriter {
     } else if (word == "mathit") {
       put(fmt::format("\\mathit{{{}}}", latex_text(argument())));
     } else if (word == "left" || word == "right") {
-      if (i < text.size() && text[i] == '.') ++i;
+      skip();
+      const std::string_view sign = formulas::bracket(text, i);
+      i += sign.size();
+      // LaTeX refuses one without the other
+      const bool whole = word == "left" ? formulas::right_of(text, i) != text.npos : lefts_ > 0;
+      if (whole) lefts_ += word == "left" ? 1 : -1;
+      const std::string written = sign == "⟨"   ? "\\langle "
+                                  : sign == "⟩" ? "\\rangle "
+                                  : sign == "‖" ? "\\|"
+                                                : std::string(sign) + (sign.size() > 2 ? " " : "");
+      if (whole)
+        put(fmt::format("\\{}{}", word, sign.empty() ? "." : written));
+      else if (sign != ".")
+        put(written);
     } else if (formulas::entry(formulas::kLarge, word)) {
       put(fmt::format("\\{}{} ", word, word.ends_with("int") ? "" : "\\limits"));
     } else if (word == "sgn") {
@@ -232,6 +254,7 @@ class LatexWriter {
 
   std::string out_;
   bool latex_, bold_;
+  int lefts_ = 0;                       // brackets that are open
   std::size_t units_ = 0;               // where those end that are written now
   bool above_ = false, below_ = false;  // scripts of what came last
 };
@@ -274,13 +297,13 @@ std::string latex_text(std::string_view words) {
 }
 
 std::string latex(std::string_view text) {
-  if (text.find('$') == text.npos) return mathematics(text, false);
+  if (formulas::dollar(text, 0) == text.npos) return mathematics(text, false);
   std::string out;
   bool inside = false;
   for (std::size_t i = 0; i <= text.size(); inside = !inside) {
-    const std::size_t end = std::min(text.find('$', i), text.size());
+    const std::size_t end = std::min(formulas::dollar(text, i), text.size());
     const std::string_view part = text.substr(i, end - i);
-    out += inside ? mathematics(part, true) : latex_text(part);
+    out += inside ? mathematics(part, true) : latex_text(formulas::plain(part));
     i = end + 1;
   }
   return out;

@@ -133,7 +133,11 @@ class Speller {
                          std::begin(formulas::kAccents);
       return spell(next()) + std::string(kCombining[which]);
     }
-    if (word == "frac") {
+    if (word == "overline") {
+      const std::string under = spell(next());
+      return under.size() == 1 ? under + std::string(kCombining[0]) : under;
+    }
+    if (formulas::fraction(word)) {
       const std::string above = factor(next()), below = factor(next());
       return above == "1" && below == "2" ? "½" : above + "/" + below;
     }
@@ -163,10 +167,11 @@ class Speller {
 std::vector<Phrase> phrases(std::string_view words) {
   std::vector<Phrase> all;
   std::size_t plain = 0;
-  for (std::size_t open = words.find('$'); open != words.npos; open = words.find('$', open)) {
+  const auto dollar = [&](std::size_t from) { return formulas::dollar(words, from); };
+  for (std::size_t open = dollar(0); open != words.npos; open = dollar(open)) {
     std::size_t close = words.npos;
     if (open + 1 < words.size() && !space(words[open + 1]))
-      for (close = words.find('$', open + 1); close != words.npos; close = words.find('$', close + 1))
+      for (close = dollar(open + 1); close != words.npos; close = dollar(close + 1))
         if (close > open + 1 && !space(words[close - 1]) &&
             (close + 1 == words.size() || !numeral(words[close + 1])))
           break;
@@ -183,17 +188,28 @@ std::vector<Phrase> phrases(std::string_view words) {
 }
 
 bool contains_mathematics(std::string_view words) {
-  if (words.find('$') == words.npos) return false;
+  if (formulas::dollar(words, 0) == words.npos) return false;
   const std::vector<Phrase> all = phrases(words);
   return std::any_of(all.begin(), all.end(), [](const Phrase& phrase) { return phrase.mathematics; });
 }
 
 std::optional<FormulaMistake> prose_mistake(std::string_view words) {
+  const auto characters = [&](std::size_t bytes) {
+    return std::size_t(std::count_if(words.begin(), words.begin() + std::ptrdiff_t(bytes),
+                                     [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  };
   for (const Phrase& phrase : phrases(words)) {
-    if (!phrase.mathematics) continue;
-    if (auto wrong = mistake(phrase.text)) {
-      wrong->column += phrase.begin;
-      return wrong;
+    if (phrase.mathematics) {
+      if (auto wrong = mistake("$" + std::string(phrase.text) + "$")) {
+        wrong->column += characters(phrase.begin) - 1;
+        return wrong;
+      }
+    } else if (const std::size_t open = formulas::dollar(phrase.text, 0); open != words.npos) {
+      // no money: a command follows
+      for (std::size_t i = open; i + 1 < phrase.text.size(); ++i)
+        if (phrase.text[i] == '\\' && formulas::latin(phrase.text[i + 1]))
+          return FormulaMistake{characters(phrase.begin + open) + 1,
+                                "'$' without another that ends the mathematics; '\\$' is a dollar"};
     }
   }
   return {};
@@ -208,7 +224,8 @@ Formula prose(std::string_view words, Face face, double size, Color color) {
       part = formula("$" + std::string(phrase.text) + "$", kBeside * size, color);
     } else {
       part.size = size, part.color = color, part.source = phrase.text;
-      part.spans.push_back({.text = std::string(phrase.text), .face = face, .size = size, .color = color});
+      part.spans.push_back(
+          {.text = formulas::plain(phrase.text), .face = face, .size = size, .color = color});
       part.width = shape({{0, 0}, Align::left, part.spans}).width;
       part.ascent = 0.74 * size, part.descent = 0.22 * size;
     }
@@ -223,7 +240,7 @@ Formula prose(std::string_view words, Face face, double size, Color color) {
 void add_prose(const std::string& words, Face face, double size, Color color, const Point& at, Align align,
                List& list) {
   if (!contains_mathematics(words)) {
-    list.add(Text{at, align, {{.text = words, .face = face, .size = size, .color = color}}});
+    list.add(Text{at, align, {{.text = formulas::plain(words), .face = face, .size = size, .color = color}}});
     return;
   }
   const Formula set = prose(words, face, size, color);
@@ -233,7 +250,7 @@ void add_prose(const std::string& words, Face face, double size, Color color, co
 std::string in_letters(std::string_view words) {
   std::string all;
   for (const Phrase& phrase : phrases(words))
-    all += phrase.mathematics ? Speller(true).spell(phrase.text) : std::string(phrase.text);
+    all += phrase.mathematics ? Speller(true).spell(phrase.text) : formulas::plain(phrase.text);
   return all;
 }
 

@@ -377,6 +377,21 @@ Line shape(const Text& text) {
   return line;
 }
 
+std::pair<double, double> ink_of(const Text& text) {
+  double above = -1e9, below = -1e9;
+  for (const Shaped& span : shape(with_all_signs(text)).spans) {
+    const Font& face = font(span.face);
+    const double em = span.size / face.units();
+    for (const Glyph& glyph : span.glyphs) {
+      hb_glyph_extents_t ink;
+      if (!hb_font_get_glyph_extents(face.get(), glyph.index, &ink) || ink.height == 0) continue;
+      above = std::max(above, em * ink.y_bearing - glyph.at.y());
+      below = std::max(below, glyph.at.y() - em * (ink.y_bearing + ink.height));
+    }
+  }
+  return above > -1e9 ? std::pair(above, below) : std::pair(0.0, 0.0);
+}
+
 // Mathematical Alphanumeric Symbols, Unicode 1D400 to 1D7FF
 std::string characters_of(const Span& span) {
   if (span.face < Face::math_italic || !font_file(span.face).alphabets) return span.text;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "draw/picture/list.h"
@@ -31,6 +32,9 @@ struct Line {
 /// Shapes a line by its fonts' own metrics, unhinted, so that it scales. Throws draw::Error where a font is
 /// missing.
 Line shape(const Text& text);
+
+/// How far the ink of a line reaches above its baseline and below it, page units; both may be negative.
+std::pair<double, double> ink_of(const Text& text);
 
 /// The same line with signs that the font of a span lacks in spans of another face that has them: words and
 /// mathematics help each other out. Throws draw::Error where a font is missing.
