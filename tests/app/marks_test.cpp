@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,6 +17,7 @@
 #include "draw/page/measure.h"
 #include "draw/page/readings.h"
 #include "draw/picture/formula.h"
+#include "draw/picture/type.h"
 #include "draw/plane/stage.h"
 #include "needs.h"
 #include "program.h"
@@ -650,6 +652,90 @@ end = 1
   EXPECT_THAT(run.err, HasSubstr("'text': expected {} or {:.2}, the number of decimals, got \"{:2.1f}\""));
   EXPECT_THAT(run.err, HasSubstr("a place of the room has no path: expected a body"));
   EXPECT_THAT(run.err, HasSubstr("'end' comes before 'start': it would never be shown"));
+}
+
+/// What `check` says of the length of a film counts where its run makes it stand still, and where it ends.
+TEST_F(MarkedFilm, CheckCountsTheFreezesAtMarks) {
+  const auto frames = [&](const std::string& more) {
+    scene(
+        "duration = 1\n[room]\nsize = [4, 3]\n[[ball]]\nname = \"ball\"\nradius = 0.2\nposition = [1, 1]\n"
+        "[[when]]\ntouches = [\"ball\", \"floor\"]\ndo = [{ " +
+        more);
+    const Outcome run = obscura("check scene.toml");
+    EXPECT_EQ(run.exit, 0) << run.err;
+    EXPECT_THAT(run.out, Not(HasSubstr("warning")));
+    const std::size_t at = run.out.find(" frames");
+    return std::stoi(run.out.substr(run.out.rfind(' ', at - 1)));
+  };
+  EXPECT_EQ(frames("mark = \"hit\" }]\n[film]\nfps = 20\n"), 20);
+  EXPECT_EQ(frames("mark = \"hit\" }]\n[film]\nfps = 20\nspeed = [{ time = \"hit\", freeze = 0.5 }]\n"), 30);
+  // 0.8 m take 0.404 s
+  EXPECT_EQ(frames("stop = true }]\n[film]\nfps = 20\n"), 9);
+}
+
+/// A label that is longer than the room beside what it names moves over, and stays on the page.
+TEST(Marks, WordsStayOnThePage) {
+  const std::string text = R"(duration = 1
+[room]
+size = [0.02, 0.03]
+[[ball]]
+name = "bead"
+radius = 0.001
+position = [0.01, 0.02]
+[film]
+size = [720, 1280]
+[[film.vector]]
+quantity = "weight"
+of = "bead"
+label = "a label that is quite long, weight = {:.8} N"
+[[film.label]]
+at = [0.0195, 0.01]
+text = "at the edge"
+)";
+  Filmed film(scene::parse(text, "long.toml", {}));
+  for (std::int64_t frame = 0; frame < film.shots.size(); frame += 10) {
+    const sim::Snapshot now = film.now(frame);
+    const draw::Rect window = film.artist.projection(0, now).window();
+    int words = 0;
+    for (const draw::Text& each : film.marks(now, frame).texts) {
+      ++words;
+      EXPECT_GE(each.at.x(), window.x) << said(each);
+      EXPECT_LE(each.at.x() + draw::shape(each).width, window.x + window.width) << said(each);
+    }
+    EXPECT_EQ(words, 2);
+  }
+}
+
+/// Whatever digits a value has: what stands before it and behind it stays to the hundredth of a pixel.
+TEST(Marks, ALabelWithAValueDoesNotMove) {
+  const std::string text = R"(duration = 2
+[room]
+size = [6, 6]
+[[ball]]
+name = "ball"
+radius = 0.2
+position = [3, 0.5]
+velocity = [0, 10.5]
+[film]
+size = [1280, 720]
+[[film.label]]
+at = [1.5, 4]
+text = "v_y = {:.2} m/s"
+quantity = "vy"
+of = "ball"
+)";
+  Filmed film(scene::parse(text, "jump.toml", {}));
+  std::set<std::size_t> lengths;
+  std::set<std::int64_t> lefts, rights;
+  for (std::int64_t frame = 0; frame < film.shots.size(); ++frame)
+    for (const draw::Text& each : film.marks(film.now(frame), frame).texts) {
+      lengths.insert(said(each).size());
+      lefts.insert(std::llround(100 * each.at.x()));
+      rights.insert(std::llround(100 * (each.at.x() + draw::shape(each).width)));
+    }
+  EXPECT_GE(lengths.size(), 3u);  // 10.01, 9.99, -9.99
+  EXPECT_EQ(lefts.size(), 1u);
+  EXPECT_EQ(rights.size(), 1u);
 }
 
 /// What the arrows of a label belong to is told by their numbers, in films and in figures, from the first

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "draw/compose/comparison.h"
 #include "draw/made.h"
 #include "draw/page/layout.h"
 #include "draw/picture/formula.h"
@@ -128,6 +129,23 @@ TEST(Labels, KeepOffOtherBodiesAndTheArrowsOfBodies) {
           << arrow << " " << k;
     }
   }
+}
+
+// Runs that are drawn over each other have their names as the panels have them.
+TEST(Labels, NamesOfRunsOverEachOtherAreMathematics) {
+  std::vector<ComparedRun> runs(3);
+  runs[0].name = "Euler", runs[1].name = "RK4 $\\sqrt{h}$", runs[2].name = "$\\frac{a}{b}$";
+  const std::vector<RunInstant> nows(3);
+  List list;
+  draw_run_names(runs, nows, {0, 0, 1000, 1000}, 1, palette(Theme::paper), list);
+  EXPECT_TRUE(said(list, "Euler"));
+  EXPECT_TRUE(said(list, "RK4 "));
+  EXPECT_TRUE(said(list, "h"));
+  for (const Text& text : list.texts) EXPECT_EQ(text.spans[0].text.find("√"), std::string::npos);
+  EXPECT_GE(list.strokes.size(), 2u);  // the root's sign and the fraction's bar
+  // one below the other, and no plate over another
+  EXPECT_GT(said(list, "RK4 ")->at.y(), said(list, "Euler")->at.y() + 20);
+  EXPECT_GT(said(list, "a")->at.y() - 20, said(list, "RK4 ")->at.y());
 }
 
 }  // namespace

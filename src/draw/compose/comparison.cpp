@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "draw/page/layout.h"
+#include "draw/picture/prose.h"
 #include "draw/picture/solids.h"
 #include "draw/picture/type.h"
 
@@ -58,20 +59,24 @@ void add_panel(const List& own, const Rect& panel, List& list) {
   list.add(moved, 1, {0, 0});
 }
 
-// words in the corner of a window, in the row-th line, on a plate of the room's colour
-void write_in_corner(const std::vector<Span>& spans, const Rect& window, double weight, int row,
-                     const Palette& colours, List& list) {
+// words in the corner of a window, `down` from its upper edge, on a plate of the room's colour, perhaps
+// behind a name with mathematics
+void write_in_corner(const Formula& name, const std::vector<Span>& spans, const Rect& window, double weight,
+                     double down, const Palette& colours, List& list) {
   const double size = kWords * weight, around = kPlateAround * weight;
   // not before the title's left end
   const double x = std::max(window.x + 3 * around, kTitleLeft * (window.x + window.width));
-  Text text{{x, window.y + kRow * weight * (row + 1)}, Align::left, spans};
-  const double width = shape(text).width;
-  const double left = text.at.x() - around, right = text.at.x() + width + around;
-  const double high = text.at.y() - 0.74 * size - around, low = text.at.y() + 0.22 * size + around;
+  const Point at(x, window.y + down);
+  const Text text{at + Point(name.width, 0), Align::left, spans};
+  const double width = name.width + shape(text).width;
+  const double left = at.x() - around, right = at.x() + width + around;
+  const double high = at.y() - std::max(0.74 * size, name.ascent) - around,
+               low = at.y() + std::max(0.22 * size, name.descent) + around;
   Color plate = colours.room;
   plate.a = kNamePlate;
   list.add({{left, high}, {right, high}, {right, low}, {left, low}}, plate);
-  list.add(text);
+  add(name, at, list);
+  if (!spans.empty()) list.add(text);
 }
 
 }  // namespace
@@ -193,30 +198,38 @@ Picture Comparison::depict(const std::vector<Instant>& runs, double time, double
 
 void draw_run_names(const std::vector<ComparedRun>& runs, const std::vector<RunInstant>& nows,
                     const Rect& window, double weight, const Palette& colours, List& list) {
+  double down = 0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const std::string words = words_of(nows[i]);
-    std::vector<Span> spans{{.text = in_letters(runs[i].name),
-                             .face = Face::bold,
-                             .size = kWords * weight,
-                             .color = legible(runs[i].color, colours)}};
+    const double size = kWords * weight;
+    const Color color = legible(runs[i].color, colours);
+    std::vector<Span> spans;
+    Formula name;
+    if (contains_mathematics(runs[i].name))
+      name = prose(runs[i].name, Face::bold, size, color);
+    else
+      spans.push_back({.text = in_letters(runs[i].name), .face = Face::bold, .size = size, .color = color});
+    // high mathematics takes more of the column
+    down += std::max(kRow * weight, name.ascent + name.descent + (kRow - kWords) * weight);
     if (!words.empty())
       spans.push_back({.text = " " + words,
                        .face = Face::medium,
                        .size = kWords * weight,
                        .color = colours.force,
                        .tabular = true});
-    write_in_corner(spans, window, weight, int(i), colours, list);
+    write_in_corner(name, spans, window, weight, down, colours, list);
   }
 }
 
 void draw_fate(const RunInstant& now, const Rect& window, double weight, const Palette& colours, List& list) {
   if (now.fate == Fate::well) return;
-  write_in_corner({{.text = words_of(now),
+  write_in_corner({},
+                  {{.text = words_of(now),
                     .face = Face::bold,
                     .size = kWords * weight,
                     .color = colours.force,
                     .tabular = true}},
-                  window, weight, 0, colours, list);
+                  window, weight, kRow * weight, colours, list);
 }
 
 }  // namespace obscura::draw
