@@ -221,6 +221,7 @@ TEST(Formula, BracketsAreAsHighAsWhatIsBetweenThem) {
   ASSERT_EQ(bars.lines.size(), 3u);
   EXPECT_LT(bars.lines[0].points[0].y(), -formula("\\frac{a}{b}", 100, {}).ascent + 1);
   EXPECT_GT(bars.lines[2].points[0].x(), bars.lines[1].points[1].x());
+  EXPECT_EQ(set("\\left\\| x \\right\\|")[0].first, "‖ ");
   // what is not high has brackets of their own size
   EXPECT_EQ(formula("\\left(x\\right)", 100, {}).spans[0].size, 100);
   EXPECT_EQ(formula("\\left.\\frac{a}{b}\\right|", 100, {}).lines.size(), 2u);
@@ -291,6 +292,8 @@ TEST(Formula, ALiveLabelKeepsItsPlaceAndItsWidth) {
       for (std::size_t k = 0; k < at.size(); ++k) EXPECT_NEAR(at[k], widest[k], 1e-9) << text << " " << value;
     }
   }
+  // a peak between the samples of the run has its place
+  EXPECT_EQ(live("{:.2}", 10.01, 0, 9.99, "", 100, {}).width, live("{:.2}", 5, 0, 9.99, "", 100, {}).width);
   // a value of one sign and one number of digits has no room before it
   EXPECT_NEAR(live("{:.1}", 5, 2, 9, "", 100, {}).width,
               formula("\x01"

@@ -326,7 +326,7 @@ class Setter {
     if (sign.empty()) return;
     if (sign.size() > 1 && sign[0] == '\\') {
       const formulas::Name* name = formulas::entry(formulas::kNames, sign.substr(1));
-      sign = name ? name->symbol : sign.substr(1);
+      sign = name ? name->symbol : sign == "\\|" ? "‖" : sign.substr(1);
     }
     const double em = scale * out_.size;
     const auto [above, below] =
@@ -357,7 +357,7 @@ class Setter {
       if (space > 0)
         pending_ += space * scale * out_.size;
       else if (c != '!')
-        put(text.substr(i - 1, 1), Face::math, scale, rise);
+        put(c == '|' ? "‖" : text.substr(i - 1, 1), Face::math, scale, rise);
       return;
     }
     // a name ends with its space, as in LaTeX, where that is not seen anyway
@@ -623,6 +623,7 @@ std::string spaced(std::string_view unit) {
 
 // a number with three digits that count has a power of ten from here up, and below that
 constexpr double kLarge = 999'999.5, kSmall = 1e-4, kZero = 1e-9;
+constexpr double kBetweenSamples = 0.005;  // of the range of a live value
 
 // the exponent of a number that has a power of ten
 std::optional<int> power_of_ten(double size) {
@@ -711,7 +712,10 @@ Formula live(const std::string& text, double value, double low, double high, std
   const auto width = [&](double x) {
     return formula(kNumber + number(x / part, digits) + kNumberEnd, size, color).width;
   };
-  const double own = width(value), widest = std::max({own, width(low), width(high)});
+  // the range was found at samples: between them the value goes a little farther, but to no other sign
+  const double beyond = kBetweenSamples * (high - low);
+  const double own = width(value), widest = std::max({own, width(low < 0 ? low - beyond : low),
+                                                      width(high > 0 ? high + beyond : high)});
   const std::string shown =
       kNumber + number(value / part, digits) + kNumberEnd + (exponent ? times_power(*exponent) : "");
   const std::string whole = filled(text, *slot, shown, unit);

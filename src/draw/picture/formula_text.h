@@ -172,8 +172,9 @@ inline std::string plain(std::string_view words) {
 
 /// The bracket at text[i], behind \left or \right: "(", "\{", "\langle", "." for none. Empty: there is none.
 inline std::string_view bracket(std::string_view text, std::size_t i) {
-  static constexpr std::string_view kBrackets[] = {"(",   ")",        "[",        "]", "|", "/", ".", "\\{",
-                                                   "\\}", "\\langle", "\\rangle", "⟨", "⟩", "<", ">", "‖"};
+  static constexpr std::string_view kBrackets[] = {"(", ")",   "[",   "]",   "|",        "/",
+                                                   ".", "\\|", "\\{", "\\}", "\\langle", "\\rangle",
+                                                   "⟨", "⟩",   "<",   ">",   "‖"};
   for (const std::string_view each : kBrackets)
     if (text.substr(std::min(i, text.size())).starts_with(each)) return each;
   return {};

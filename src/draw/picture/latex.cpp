@@ -185,7 +185,7 @@ class LatexWriter {
       if (i >= text.size()) return;
       const char c = text[i++];
       static constexpr std::string_view kSpaces = ",:; !";
-      if (kSpaces.find(c) != kSpaces.npos)
+      if (kSpaces.find(c) != kSpaces.npos || c == '|')
         put(fmt::format("\\{}", c));
       else
         letter(text.substr(i - 1, 1));
