@@ -221,7 +221,10 @@ TEST(Formula, BracketsAreAsHighAsWhatIsBetweenThem) {
   ASSERT_EQ(bars.lines.size(), 3u);
   EXPECT_LT(bars.lines[0].points[0].y(), -formula("\\frac{a}{b}", 100, {}).ascent + 1);
   EXPECT_GT(bars.lines[2].points[0].x(), bars.lines[1].points[1].x());
-  EXPECT_EQ(set("\\left\\| x \\right\\|")[0].first, "‖ ");
+  EXPECT_EQ(set("\\left\\| x \\right\\|")[0].first, "‖");
+  EXPECT_EQ(formula("\\left\\| \\frac{a}{b} \\right\\|", 100, {}).lines.size(), 5u);
+  EXPECT_NEAR(formula("\\left( \\frac{a}{b} \\right)", 100, {}).width,
+              formula("\\left(\\frac{a}{b}\\right)", 100, {}).width, 1e-9);
   // what is not high has brackets of their own size
   EXPECT_EQ(formula("\\left(x\\right)", 100, {}).spans[0].size, 100);
   EXPECT_EQ(formula("\\left.\\frac{a}{b}\\right|", 100, {}).lines.size(), 2u);

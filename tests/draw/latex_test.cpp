@@ -31,7 +31,8 @@ TEST(Latex, SaysWhatTheFormulaSays) {
            std::pair("\\dfrac{1}{2}\\overline{AB}", "$\\frac{1}{2}\\overline{AB}$"),
            std::pair("\\operatorname{div} a", "$\\mathop{\\mathrm{div}}\\nolimits a$"),
            std::pair("$\\left( \\frac{a}{b} \\right\\}$", "$\\left(\\frac{a}{b}\\right\\}$"),
-           std::pair("\\left( x", "$(\\ x$"),
+           std::pair("\\left( \\frac{a}{b} \\right)", "$\\left(\\frac{a}{b}\\right)$"),
+           std::pair("\\left( x", "$(x$"),
            std::pair("at $t=0$, 50%", "at $t=0$, 50\\%"),
        })
     EXPECT_EQ(latex(text), written) << text;

@@ -308,7 +308,10 @@ class Setter {
     const std::string_view left = signs_at(i);
     const std::size_t end = formulas::right_of(text, i);
     if (end == text.npos) return bracket(left, 0, scale, rise);
-    const std::string_view within = text.substr(i, end - i);
+    // spaces at the brackets are seen no more than in LaTeX
+    while (i < end && text[i] == ' ') ++i;
+    std::string_view within = text.substr(i, end - i);
+    while (within.ends_with(' ')) within.remove_suffix(1);
     i = end + std::string_view("\\right").size();
     const std::string_view right = signs_at(i);
 
@@ -333,13 +336,18 @@ class Setter {
         ink_of({{0, 0}, Align::left, {{.text = std::string(sign), .face = Face::math, .size = em}}});
     const double own = std::max((above + below) / 2, 0.1 * em);
     if (half <= kNotHigh * own) return put(sign, Face::math, scale, rise);
-    if (sign == "|") {
+    if (sign == "|" || sign == "‖") {
       // as thin as a fraction's
       const double from = width() + 0.12 * em, axis = (rise + scale * kAxis) * out_.size;
-      out_.lines.push_back({{{from, -axis - half}, {from, -axis + half}}, kBar * em});
+      const auto bar = [&](double x) {
+        out_.lines.push_back({{{x, -axis - half}, {x, -axis + half}}, kBar * em});
+      };
+      bar(from);
+      const double second = sign == "|" ? 0 : 0.16 * em;
+      if (second > 0) bar(from + second);
       out_.ascent = std::max(out_.ascent, axis + half);
       out_.descent = std::max(out_.descent, half - axis);
-      pending_ += 0.24 * em;
+      pending_ += second + 0.24 * em;
       return;
     }
     const double grown = std::min(1.06 * half / own, kTallest);

@@ -224,6 +224,9 @@ class LatexWriter {
       skip();
       const std::string_view sign = formulas::bracket(text, i);
       i += sign.size();
+      // spaces at the brackets are not seen
+      if (word == "left") skip();
+      if (word == "right" && out_.ends_with("\\ ")) out_.resize(out_.size() - 2);
       // LaTeX refuses one without the other
       const bool whole = word == "left" ? formulas::right_of(text, i) != text.npos : lefts_ > 0;
       if (whole) lefts_ += word == "left" ? 1 : -1;
