@@ -151,11 +151,10 @@ TEST(Plot, WordsOfTheAxesKeepOffEachOther) {
   }
 }
 
-/// How a line is drawn but for its colour: its dashes' lengths, and how wide it
-/// is.
+/// How a line is drawn but for its colour: its dashes' lengths, and how many corners its markers have.
 std::vector<double> look_of(int style) {
   Plot plot = plot_of({0, 0, 0});
-  plot.lines.resize(7, plot.lines[0]);
+  plot.lines.resize(16, plot.lines[0]);
   tell_apart(plot);
   plot.lines = {plot.lines[std::size_t(style)]};
   List list;
@@ -166,6 +165,8 @@ std::vector<double> look_of(int style) {
                &b = list.nodes[std::size_t(list.strokes[k].end) - 1];
     lengths.push_back(std::round((b.at - a.at).norm())), lengths.push_back(std::round(a.at.x()));
   }
+  // and the corners of its markers
+  lengths.push_back(list.polygons.empty() ? 0 : list.polygons[0].end - list.polygons[0].begin);
   return lengths;
 }
 
@@ -192,8 +193,120 @@ TEST(Plot, ANarrowAxisHasThreeTicksWhereTheirNumbersFindRoom) {
 }
 
 TEST(Plot, LinesAreToldApartWithoutTheirColours) {
-  for (int a = 0; a < 6; ++a)
+  for (int a = 0; a < 16; ++a)
     for (int b = 0; b < a; ++b) EXPECT_NE(look_of(a), look_of(b)) << a << " and " << b;
+}
+
+TEST(Plot, LinesOfDotsAreToldApartWithoutTheirColours) {
+  const auto look = [](int style) {
+    Plot plot = plot_of({0, 0, 0});
+    plot.dotted = true, plot.lines[0].style = style;
+    List list;
+    draw_lines(plot, plot_area(plot, kRect, 2), list);
+    // of its markers: corners and where the first is
+    std::vector<double> all = look_of(style % 6);
+    for (const Polygon& polygon : list.polygons) {
+      all.push_back(polygon.end - polygon.begin);
+      all.push_back(std::round(list.points[std::size_t(polygon.begin)].y()));
+    }
+    return all;
+  };
+  for (int a = 0; a < 16; ++a)
+    for (int b = 0; b < a; ++b) EXPECT_NE(look(a), look(b)) << a << " and " << b;
+}
+
+Plot plot_of_many(int count, const std::string& name) {
+  Plot plot = plot_of({1, 2, 3});
+  plot.lines.clear();
+  for (int i = 0; i < count; ++i)
+    plot.lines.push_back({"\"" + name + "\"_{" + std::to_string(i) + "}", {1, 2, 3 + 0.01 * i}});
+  tell_apart(plot);
+  return plot;
+}
+
+/// Names beside their lines get smaller where there are many; of more there is a key. Neither lie on each
+/// other, nor leave the plot's rectangle.
+TEST(Plot, NamesOfManyLinesNeverLieOnEachOther) {
+  for (const std::string name : {"a", "a long name of a ball"}) {
+    for (int count = 2; count <= (name.size() > 1 ? 12 : 16); ++count) {
+      for (const Rect& rect : {Rect{0, 0, 1700, 220}, Rect{0, 0, 400, 600}}) {
+        constexpr double kPoint = 3.9;
+        const Plot plot = plot_of_many(count, name);
+        const PlotArea area = plot_area(plot, rect, kPoint);
+        List list;
+        draw_names(plot, area, palette(Theme::paper), list);
+        if (!area.key.empty()) {
+          EXPECT_TRUE(list.texts.empty());
+          draw_axes(plot, area, palette(Theme::paper), list);
+        }
+        std::vector<Rect> boxes;
+        for (const Text& text : list.texts) {
+          if (text.at.y() > area.top + (area.key.empty() ? 1e9 : 0)) continue;  // numbers of the axes
+          const double em = text.spans.front().size;
+          EXPECT_GE(em, 20);  // 1/54 of the picture
+          const auto [left, right] = width_from(text);
+          EXPECT_LE(right, rect.width + 1) << said(text);
+          EXPECT_GE(text.at.y() - 0.68 * em, 0) << said(text);
+          boxes.push_back({left, text.at.y() - 0.68 * em, right - left, 0.68 * em});
+        }
+        EXPECT_GE(int(boxes.size()), count);
+        for (std::size_t i = 0; i < boxes.size(); ++i)
+          for (std::size_t k = 0; k < i; ++k) {
+            const Rect &a = boxes[i], &b = boxes[k];
+            EXPECT_TRUE(a.x + a.width < b.x || b.x + b.width < a.x || a.y + a.height < b.y ||
+                        b.y + b.height < a.y)
+                << i << " and " << k << " of " << count << " in " << rect.width;
+          }
+        EXPECT_GE(area.bottom - area.top, 0.2 * rect.height) << count;
+      }
+    }
+  }
+}
+
+TEST(Plot, TallNamesTakeTheirOwnHeight) {
+  Plot plot = plot_of_many(3, "a");
+  plot.lines[1].label = "\\frac{m_1}{2}";
+  const PlotArea area = plot_area(plot, kRect, 2);
+  EXPECT_GT(area.heights[1], 1.2 * area.heights[0]);
+  EXPECT_GE(std::abs(area.names[1] - area.names[0]), (area.heights[0] + area.heights[1]) / 2 - 1e-9);
+  EXPECT_GE(std::abs(area.names[2] - area.names[1]), (area.heights[2] + area.heights[1]) / 2 - 1e-9);
+}
+
+/// However low the axis, its numbers do not touch: digits are 0.7 em high.
+TEST(Plot, NumbersOfTheValuesNeverTouch) {
+  for (const double top : {10.0, 1500.0, 7.3, 0.02}) {
+    for (const bool log : {false, true}) {
+      for (double height = 65; height < 400; height += 7) {
+        Plot plot = plot_of({0.004 * top, 0.3 * top, top});
+        if (log) plot.times = {1, 2, 3};
+        plot.log = log;
+        const PlotArea area = plot_area(plot, {0, 0, 500, height}, 2);
+        List list;
+        draw_axes(plot, area, palette(Theme::paper), list);
+        std::vector<double> middles;
+        for (const Text& text : list.texts)
+          if (width_from(text).second < area.left && text.at.y() > area.top - 5 &&
+              said(text).find('E') == std::string::npos)
+            middles.push_back(text.at.y());
+        std::sort(middles.begin(), middles.end());
+        EXPECT_GE(middles.size(), 1u);
+        for (std::size_t i = 1; i < middles.size(); ++i)
+          EXPECT_GT(middles[i] - middles[i - 1], 0.8 * 8.5 * 2) << top << " in " << height << " log " << log;
+      }
+    }
+  }
+}
+
+/// What is to be looked at lies over what is quiet.
+TEST(Plot, QuietLinesLieUnderTheOthers) {
+  Plot plot = plot_of_many(3, "a");
+  plot.lines[1].quiet = plot.lines[2].quiet = true;
+  EXPECT_THAT(painters_order(plot), testing::ElementsAre(1, 2, 0));
+  for (std::size_t i = 0; i < 3; ++i) plot.lines[i].color = {std::uint8_t(i), 0, 0}, plot.lines[i].style = 0;
+  List list;
+  draw_lines(plot, plot_area(plot, kRect, 2), list);
+  ASSERT_EQ(list.strokes.size(), 3u);
+  EXPECT_EQ(list.nodes[std::size_t(list.strokes.back().begin)].color, plot.lines[0].color);
 }
 
 /// Dashes do not crawl while a line grows: the first ones stay.
@@ -213,7 +326,8 @@ TEST(Plot, DashesStayWhereTheyAreWhileALineGrows) {
 
 TEST(Plot, NamesAreSpreadInTheirOrderAndWithinTheirEnds) {
   const std::vector<double> wanted{50, 52, 51, 10, 98};
-  const std::vector<double> found = spread(wanted, 10, 0, 100, by_height(wanted));
+  const std::vector<double> heights(5, 10);
+  const std::vector<double> found = spread(wanted, heights, -5, 105, by_height(wanted));
   std::vector<double> sorted = found;
   std::sort(sorted.begin(), sorted.end());
   for (std::size_t i = 1; i < sorted.size(); ++i) EXPECT_GE(sorted[i] - sorted[i - 1], 10 - 1e-9);
@@ -222,17 +336,18 @@ TEST(Plot, NamesAreSpreadInTheirOrderAndWithinTheirEnds) {
   EXPECT_EQ(found[3], 10);
   EXPECT_EQ(found[4], 98);
   EXPECT_NEAR(found[2], 51, 1e-9);
-  for (const double each : spread({99, 100, 100}, 10, 0, 100, {0, 1, 2})) EXPECT_LE(each, 100);
+  for (const double each : spread({99, 100, 100}, {10, 10, 10}, -5, 105, {0, 1, 2})) EXPECT_LE(each, 100);
 }
 
 TEST(Plot, NamesAreInTheOrderOfTheirLines) {
   EXPECT_THAT(by_height({5, 3, 5}), testing::ElementsAre(1, 0, 2));
-  EXPECT_THAT(spread({52, 50}, 10, 0, 100, {0, 1}), testing::ElementsAre(46, 56));
+  EXPECT_THAT(spread({52, 50}, {10, 10}, -5, 105, {0, 1}), testing::ElementsAre(46, 56));
 }
 
 // Two lines that cross ten times in a run, and one between them.
 TEST(Plot, NamesStandBesideTheirOwnHeadsAndNeverOnEachOther) {
   constexpr double kApart = 10;
+  const std::vector<double> kHeights(3, kApart);
   constexpr std::size_t kInstants = 1000;
   const auto winding = [](double periods) {
     std::vector<std::vector<double>> heads;
@@ -243,7 +358,7 @@ TEST(Plot, NamesStandBesideTheirOwnHeadsAndNeverOnEachOther) {
     return heads;
   };
   const auto heads = winding(5);
-  const NamePlaces places = names_beside(heads, kApart, 0, 100);
+  const NamePlaces places = names_beside(heads, kHeights, -5, 105);
   ASSERT_EQ(places.offsets.size(), 3u);
   for (std::size_t k = 0; k < kInstants; ++k) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -268,7 +383,50 @@ TEST(Plot, NamesStandBesideTheirOwnHeadsAndNeverOnEachOther) {
   EXPECT_EQ(places.changes[0].size(), places.changes[1].size());
   EXPECT_GE(places.changes[0].size(), 9u);
   // so fast that they would flicker
-  for (const auto& changes : names_beside(winding(100), kApart, 0, 100).changes) EXPECT_TRUE(changes.empty());
+  for (const auto& changes : names_beside(winding(100), kHeights, -5, 105).changes)
+    EXPECT_TRUE(changes.empty());
+}
+
+// Heads that cross once: from where they meet on the names are in the new order. Heads that wind about each
+// other narrowly keep it.
+TEST(Plot, NamesChangePlacesWhereTheirLinesMeet) {
+  constexpr std::size_t kInstants = 1000;
+  std::vector<std::vector<double>> crossing, narrow;
+  for (std::size_t k = 0; k < kInstants; ++k) {
+    const double t = double(k) / kInstants;
+    crossing.push_back({50 + 8 * (t - 0.4001), 50 - 8 * (t - 0.4001)});
+    narrow.push_back({50 + 2 * std::sin(2 * std::numbers::pi * 20 * t), 50});
+  }
+  const NamePlaces places = names_beside(crossing, {10, 10}, 0, 100);
+  ASSERT_EQ(places.changes[0].size(), 1u);
+  EXPECT_NEAR(double(places.changes[0][0]), 401, 2);
+  for (const auto& changes : names_beside(narrow, {10, 10}, 0, 100).changes) EXPECT_TRUE(changes.empty());
+}
+
+TEST(Plot, BodiesOfOneColourHaveShadesOfIt) {
+  sim::SceneInfo cast;
+  cast.bodies.resize(10);
+  Measured all;
+  all.quantities = {"height"};
+  for (int i = 0; i < 10; ++i) all.bodies.push_back(i);
+  for (const Theme theme : {Theme::paper, Theme::screen}) {
+    const Palette colours = palette(theme);
+    const Color own = paint(*color("sky"), theme).outline;
+    const auto line_color = [&](int body) { return body == 9 ? *color("orange") : own; };
+    const Plot plot = empty_plot(all, colours, cast, line_color);
+    for (std::size_t i = 0; i < 9; ++i) {
+      EXPECT_GE(contrast(plot.lines[i].color, colours.room), 2.9);
+      for (std::size_t k = 0; k < i; ++k) EXPECT_FALSE(plot.lines[i].color == plot.lines[k].color);
+    }
+    EXPECT_GT(contrast(plot.lines[0].color, plot.lines[8].color), 2);
+    EXPECT_EQ(plot.lines[9].color, *color("orange"));
+    // grey ones are grey
+    const Plot hushed = empty_plot(all, colours, cast, line_color, {}, [](int body) { return body < 9; });
+    for (std::size_t i = 0; i < 10; ++i) {
+      EXPECT_EQ(hushed.lines[i].color, line_color(int(i)));
+      EXPECT_EQ(hushed.lines[i].quiet, i < 9);
+    }
+  }
 }
 
 TEST(Plot, SeveralBodiesHaveLinesOfTheirOwn) {

@@ -85,7 +85,7 @@ std::vector<Ahead::Run> compared(const scene::Scene& scene) {
     run.look.name = names.empty() ? all.words(i) : names[std::size_t(i)];
     run.look.color = draw::compared_paint(int(i), scene.look.theme).outline;
     const sim::SceneInfo cast = one.run()->scene_info();
-    colour(cast, over, draw::turn(int(i)), one.look);
+    colour(cast, over, draw::compared_color(int(i)), one.look);
     const double own = draw::newton(cast);
     if (own > 0 && (newton == 0 || own < newton)) newton = own;
     runs.push_back(std::move(run));

@@ -27,6 +27,10 @@ constexpr std::int64_t kPoints = 480;   // of a line
 constexpr std::int64_t kFewSteps = 4;   // fewer steps than points by so much: steps are shown
 constexpr std::int64_t kPixels = 1920;  // of a line in a film
 
+bool is_quiet(const draw::Look& look, int body) {
+  return std::size_t(body) < look.bodies.size() && look.bodies[std::size_t(body)].quiet;
+}
+
 // the values of a run at one more instant
 void add(const sim::SceneInfo& cast, const sim::Snapshot& now, const draw::Measured& measured,
          const std::vector<draw::Measured::Line>& lines, draw::Plot& plot) {
@@ -145,9 +149,10 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
   const draw::Illustrator artist = depictor(scene, {});
   const auto line_color = [&](int body) { return artist.line_color(body); };
   const auto called = [&](int body) { return artist.called(body); };
+  const auto quiet = [&](int body) { return is_quiet(artist.look(), body); };
   std::vector<draw::Plot> all;
   for (const draw::Figure::Plot& wanted : scene.figure.plots) {
-    draw::Plot plot = draw::empty_plot(wanted, colours, artist.scene_info(), line_color, called);
+    draw::Plot plot = draw::empty_plot(wanted, colours, artist.scene_info(), line_color, called, quiet);
     plot.log = wanted.log;
     if (!wanted.over.empty()) {
       plot_over(scene, wanted, plot);
@@ -236,7 +241,8 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
     for (const draw::Chart& each : wanted) {
       watched.plots.push_back(draw::empty_plot(
           each, colours, artist.scene_info(), [&](int body) { return artist.line_color(body); },
-          [&](int body) { return artist.called(body); }));
+          [&](int body) { return artist.called(body); },
+          [&](int body) { return is_quiet(artist.look(), body); }));
       lines.push_back(each.lines());
     }
   }

@@ -19,6 +19,7 @@ constexpr double kPanelGap = 22, kPageEdge = 36, kBelowCaption = 8;
 constexpr double kWords = 24, kRow = 34, kPlateAround = 6;  // of words in a window's corner
 constexpr double kTitleLeft = 0.045;                        // of the width of the page
 constexpr std::uint8_t kNamePlate = 200;
+constexpr double kDarker = 0.35, kLighter = 0.45;  // runs whose colour others have had
 
 Layout page_layout(const Look& look, double aspect, double right, double below, double& top) {
   Layout layout;
@@ -81,7 +82,15 @@ void write_in_corner(const Formula& name, const std::vector<Span>& spans, const 
 
 }  // namespace
 
-Paint compared_paint(int run, Theme theme) { return paint(turn(run), theme); }
+Color compared_color(int run) {
+  constexpr int kTurns = 6;
+  const Color own = turn(run);
+  return run < kTurns       ? own
+         : run < 2 * kTurns ? mix(own, {0, 0, 0}, kDarker)
+                            : mix(own, {255, 255, 255}, kLighter);
+}
+
+Paint compared_paint(int run, Theme theme) { return paint(compared_color(run), theme); }
 
 std::vector<Rect> compared_panels(int n, double across, const Look& look, const std::vector<Chart>& charts,
                                   const Titles& titles, double aspect, int height) {

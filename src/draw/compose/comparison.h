@@ -16,7 +16,9 @@ struct ComparedRun {
   Color color{};  // of its name, of its lines in plots
 };
 
-/// The colour of one of them.
+/// The colour of one of them: those of bodies in turn, then darker and lighter ones.
+Color compared_color(int run);
+/// And what its lines and names have.
 Paint compared_paint(int run, Theme theme);
 
 /// Places for the pictures of `n` runs on a page of this caption, these titles and charts: equal panels, as

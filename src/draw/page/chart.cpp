@@ -7,6 +7,9 @@
 #include <cmath>
 #include <tuple>
 
+#include "draw/page/line_style.h"
+#include "draw/page/plot_names.h"
+
 namespace obscura::draw {
 namespace {
 
@@ -20,8 +23,21 @@ constexpr double kHead = 2.7;  // points
 // of its width: how tall a plot against a quantity is at most at the right, where it would be a strip; of
 // what its axis spans: how far it goes on beyond, so that a line does not run along the other axis
 constexpr double kTallest = 1.1, kBeyondEnds = 0.05;
-constexpr double kAround = 0.8;  // around a dot, points
+constexpr double kAround = 0.8;  // around a head, points
+constexpr double kMarkerAround =
+    1.3;                         // the same of a marker with corners, whose edges are nearer to its middle
 constexpr double kFade = 0.008;  // of the run: how long before and after a name changes places it is faint
+
+// where a line is now: a dot, or the marker along it
+void draw_head(const Series& line, const Point& at, double unit, Color ground, List& list) {
+  const int marker = marker_of(line.style);
+  if (marker == 0) {
+    list.add(Disc{at, (kHead + kAround) * unit, kAround * unit, line.color, ground});
+    return;
+  }
+  add_marker(marker, at, (kHead + kMarkerAround) * unit, ground, list);
+  add_marker(marker, at, kHead * unit, line.color, list);
+}
 
 }  // namespace
 
@@ -88,8 +104,8 @@ void Charts::place_names(Panel& panel) const {
       heads[k].push_back(area.at(area.first, std::clamp(value, area.low, area.high)).y());
     }
   }
-  panel.names =
-      names_beside(heads, kNamesApart * area.point, area.top, area.bottom - kAboveAxis * area.point);
+  const auto [low, high] = room_for_names(area);
+  panel.names = names_beside(heads, area.heights, low, high);
 }
 
 double Charts::Panel::change(std::size_t line, std::size_t number) const {
@@ -144,8 +160,10 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
       const Series& all = panel.plot.lines[i];
       const auto gone = std::size_t(std::lower_bound(times.begin(), times.end(), now.time) - times.begin());
       const auto n = std::ptrdiff_t(std::min(gone, all.values.size()));
-      Series line{all.label, {all.values.begin(), all.values.begin() + n}, all.color, {}, all.note, all.style,
-                  all.weight};
+      Series line{all.label,  {all.values.begin(), all.values.begin() + n},
+                  all.color,  {},
+                  all.note,   all.style,
+                  all.weight, all.quiet};
       const std::vector<double>& way = all.along.empty() ? times : all.along;
       line.along.assign(way.begin(), way.begin() + n);
       within.push_back((!over_time || now.time <= panel.area.last) &&
@@ -160,7 +178,7 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
     }
     const int number = kMostLines * int(&panel - panels_.data());
     obscura::draw::draw_lines(past, panel.area, list, number);
-    for (std::size_t i = 0; i < past.lines.size(); ++i) {
+    for (const std::size_t i : painters_order(past)) {
       const Series& line = past.lines[i];
       if (line.values.empty()) continue;
       // the name of a line that has left the range stays where it left
@@ -169,10 +187,10 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
         while (last > 0 && !panel.area.spans(line.values[last])) --last;
       const bool inside = last + 1 == line.values.size();
       const Point at = panel.area.at(line.along[last], line.values[last]);
-      list.of({Subject::What::chart, number + int(i)});
       const double unit = panel.area.point;
-      if (within[i] && inside)
-        list.add(Disc{at, (kHead + kAround) * unit, kAround * unit, line.color, colours_.ground});
+      // a subject of its own: the markers along the line become more
+      list.of({Subject::What::chart, number + kMostLines / 2 + int(i)});
+      if (within[i] && inside) draw_head(line, at, unit, colours_.ground, list);
       const bool placed = over_time && inside;
       const double high = at.y() + (placed ? panel.offset(i, line.along.back()) : 0);
       draw_name(panel.plot, i, panel.area,

@@ -197,19 +197,45 @@ std::string title(const Measure& measure) {
 
 }  // namespace
 
+namespace {
+
+// Bodies of one colour, as copies are, have shades of it, from that nearest to the ink on; grey ones that are
+// not to be looked at have one.
+std::vector<Color> shades(const Measured& measured, const Palette& colours,
+                          const std::function<Color(int body)>& line_color,
+                          const std::function<bool(int body)>& quiet) {
+  std::vector<Color> own, all;
+  for (const int body : measured.bodies) own.push_back(line_color(body));
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const auto end = own.begin() + std::ptrdiff_t(i);
+    const auto before = std::count(own.begin(), end, own[i]),
+               many = std::count(own.begin(), own.end(), own[i]);
+    const bool plain = many < 2 || (quiet && quiet(measured.bodies[i]));
+    all.push_back(plain ? own[i] : shade(own[i], double(before) / double(many - 1), colours));
+  }
+  return all;
+}
+
+}  // namespace
+
 Plot empty_plot(const Measured& measured, const Palette& colours, const sim::SceneInfo& cast,
                 const std::function<Color(int body)>& line_color,
-                const std::function<std::string(int body)>& called) {
+                const std::function<std::string(int body)>& called,
+                const std::function<bool(int body)>& quiet) {
   Plot plot;
   const std::vector<const Measure*> measures = measured.measures();
   const bool several = measured.bodies.size() > 1;
+  const std::vector<Color> colors =
+      several ? shades(measured, colours, line_color, quiet) : std::vector<Color>();
   for (const Measured::Line& line : measured.lines()) {
     const auto own = color(line.measure->color);
     Series series{line.measure->label, {}, own ? mix(*own, colours.ink, 0.2) : colours.ink};
     if (several && line.measure->of != Measure::Of::room) {
       const std::string name = called ? called(line.body) : spoken(cast.bodies[std::size_t(line.body)].name);
       series.label = measures.size() > 1 ? series.label + " " + name : name;
-      series.color = line_color(line.body);
+      const auto which = std::find(measured.bodies.begin(), measured.bodies.end(), line.body);
+      series.color = colors[std::size_t(which - measured.bodies.begin())];
+      series.quiet = quiet && quiet(line.body);
     }
     // the sum of the others
     if (line.measure->name == "energy" && measures.size() > 1) series.weight = 1.5;

@@ -58,11 +58,12 @@ struct Measured {
 
 /// A plot of them before anything is measured: lines with names, colours and dashes, and titles of its axes.
 /// Of one body a quantity has its arrows' colour, or one that means nothing else; several bodies have theirs,
-/// which `line_color` tells, and the names that `called` tells, as mathematics; those of the scene without
-/// it.
+/// which `line_color` tells, or shades of it where they share one, and the names that `called` tells, as
+/// mathematics; those of the scene without it. `quiet`: whether others are to be looked at.
 Plot empty_plot(const Measured& measured, const Palette& colours, const sim::SceneInfo& cast,
                 const std::function<Color(int body)>& line_color,
-                const std::function<std::string(int body)>& called = {});
+                const std::function<std::string(int body)>& called = {},
+                const std::function<bool(int body)>& quiet = {});
 
 /// A name of a scene as mathematics: "left_bob" is a left bob, "crate[2]" a crate with an index.
 std::string spoken(std::string name);

@@ -1,10 +1,13 @@
 // Names stand beside the heads of their lines, as far from each other as they are high, in the order of the
-// heads. Lines that wind about each other so fast that names would flicker keep their order. While an order
+// heads. Lines that wind about each other so fast that names would flicker, or narrowly, keep their order.
+// While an order
 // holds, names glide: their distances from their heads are averaged over a while.
 
 #include "draw/page/names_beside.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "draw/page/plot.h"
@@ -12,20 +15,23 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kSettle = 0.02;   // of the run, at each side: over which the places of names are averaged
-constexpr double kPassed = 0.5;    // of the names' distance: so far past each other lines change their order
+constexpr double kSettle = 0.02;  // of the run, at each side: over which the places of names are averaged
+constexpr double kPassed =
+    0.15;  // of the names' distance: lines that come so far past each other change order
 constexpr double kBriefly = 0.02;  // of the run: an order for so short a while is none
+constexpr double kNear = 0.5;      // of the names' distance: heads no farther past each other
+constexpr double kShortly = 0.06;  // of the run: an order of heads so near, for so short a while, is none
 
-// What holds for fewer than `least` instants becomes what was before, or at the start what comes after; where
-// nothing holds for longer, what holds for most of the time.
-void drop_brief(std::vector<char>& all, std::size_t least) {
+// What holds for fewer instants than `least` says becomes what was before, or at the start what comes after;
+// where nothing holds for longer, what holds for most of the time.
+void drop_brief(std::vector<char>& all, const std::function<std::size_t(std::size_t, std::size_t)>& least) {
   std::size_t kept = 0;  // up to there
   for (std::size_t first = 0, last = 0; first < all.size(); first = last) {
     while (last < all.size() && all[last] == all[first]) ++last;
-    if (last - first >= least && kept == 0)
-      std::fill(all.begin(), all.begin() + std::ptrdiff_t(first), all[first]);
-    if (last - first >= least) kept = last;
-    if (last - first < least && kept > 0)
+    const bool holds = last - first >= least(first, last);
+    if (holds && kept == 0) std::fill(all.begin(), all.begin() + std::ptrdiff_t(first), all[first]);
+    if (holds) kept = last;
+    if (!holds && kept > 0)
       std::fill(all.begin() + std::ptrdiff_t(first), all.begin() + std::ptrdiff_t(last), all[kept - 1]);
   }
   if (kept == 0 && !all.empty()) {
@@ -36,17 +42,26 @@ void drop_brief(std::vector<char>& all, std::size_t least) {
 
 // The lines from the uppermost down, at each instant: by the pairs' orders, each of which changes where the
 // pair has passed each other, and not briefly.
-std::vector<std::vector<int>> ranked(const std::vector<std::vector<double>>& heads, double passed) {
-  const std::size_t n = heads.size(), count = heads[0].size(), least = std::size_t(kBriefly * double(n));
+std::vector<std::vector<int>> ranked(const std::vector<std::vector<double>>& heads,
+                                     const std::vector<double>& heights) {
+  const std::size_t n = heads.size(), count = heads[0].size();
   std::vector<std::vector<int>> under(n, std::vector<int>(count, 0));  // how many each is below
   std::vector<char> below(n);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      for (std::size_t k = 0; k < n; ++k) {
-        const double by = heads[k][i] - heads[k][j];
-        below[k] = k == 0 ? by >= 0 : below[k - 1] ? by > -passed : by > passed;
-      }
-      drop_brief(below, least);
+      const double apart = (heights[i] + heights[j]) / 2, passed = kPassed * apart;
+      const auto by = [&](std::size_t k) { return heads[k][i] - heads[k][j]; };
+      for (std::size_t k = 0; k < n; ++k)
+        below[k] = k == 0 ? by(k) >= 0 : below[k - 1] ? by(k) > -passed : by(k) > passed;
+      // the order has changed since they met
+      for (std::size_t k = n; k-- > 1;)
+        if (below[k] != below[k - 1] && by(k - 1) != 0 && (by(k - 1) > 0) == (below[k] != 0))
+          below[k - 1] = below[k];
+      drop_brief(below, [&](std::size_t first, std::size_t last) {
+        double most = 0;
+        for (std::size_t k = first; k < last; ++k) most = std::max(most, std::abs(by(k)));
+        return std::size_t((most < kNear * apart ? kShortly : kBriefly) * double(n));
+      });
       for (std::size_t k = 0; k < n; ++k) ++under[k][below[k] ? i : j];
     }
   }
@@ -62,11 +77,11 @@ std::vector<std::vector<int>> ranked(const std::vector<std::vector<double>>& hea
 
 }  // namespace
 
-NamePlaces names_beside(const std::vector<std::vector<double>>& heads, double apart, double low,
-                        double high) {
+NamePlaces names_beside(const std::vector<std::vector<double>>& heads, const std::vector<double>& heights,
+                        double low, double high) {
   const std::size_t n = heads.size(), count = n > 0 ? heads[0].size() : 0;
   if (count == 0) return {};
-  const std::vector<std::vector<int>> orders = ranked(heads, kPassed * apart);
+  const std::vector<std::vector<int>> orders = ranked(heads, heights);
 
   NamePlaces found{{count, std::vector<double>(n, 0)}, {}};
   found.changes.resize(count);
@@ -80,7 +95,7 @@ NamePlaces names_beside(const std::vector<std::vector<double>>& heads, double ap
     // the mean over the instants around each with this order, by sums of all before
     std::vector<std::vector<double>> sums(last - first + 1, std::vector<double>(count, 0));
     for (std::size_t k = first; k < last; ++k) {
-      const std::vector<double> names = spread(heads[k], apart, low, high, orders[k]);
+      const std::vector<double> names = spread(heads[k], heights, low, high, orders[k]);
       for (std::size_t i = 0; i < count; ++i)
         sums[k - first + 1][i] = sums[k - first][i] + names[i] - heads[k][i];
     }
@@ -89,7 +104,7 @@ NamePlaces names_beside(const std::vector<std::vector<double>>& heads, double ap
       const std::size_t to = std::min(last, k + reach + 1) - first;
       std::vector<double> names = heads[k];
       for (std::size_t i = 0; i < count; ++i) names[i] += (sums[to][i] - sums[from][i]) / double(to - from);
-      names = spread(names, apart, low, high, orders[k]);
+      names = spread(names, heights, low, high, orders[k]);
       for (std::size_t i = 0; i < count; ++i) found.offsets[i][k] = names[i] - heads[k][i];
     }
   }

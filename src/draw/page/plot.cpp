@@ -1,6 +1,6 @@
 // A plot. Only the two axes it needs, ticks at 1, 2 or 5 times a power of ten, and words at the ends of the
-// lines instead of a key. Words at ends that lie close together are pushed apart. Lines differ in their
-// dashes and markers, so that they can be told apart in grey.
+// lines instead of a key where there is room for them. Words at ends that lie close together are pushed
+// apart. Lines differ in their dashes and markers, so that they can be told apart in grey.
 
 #include "draw/page/plot.h"
 
@@ -8,26 +8,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
+#include "draw/page/line_style.h"
+#include "draw/page/plot_names.h"
 #include "draw/page/sheet.h"
 #include "draw/picture/formula.h"
 
 namespace obscura::draw {
 namespace {
 
-constexpr double kTypeSize = 8.5, kTick = 2.5, kLine = 1.0, kAxis = 0.6;  // points
+constexpr double kTick = 2.5, kAxis = 0.6;  // points
 constexpr double kDotRadius = 1.6;
-constexpr double kAbove = 17, kBelow = 13;         // points: room for the title, for the numbers
+constexpr double kBelow = 13;                      // points: room for the numbers
 constexpr double kAcross = 34, kNumbersApart = 4;  // points: from tick to tick, between numbers at least
 constexpr double kHeadroom = 0.05;                 // of the range of the values: room above and below it
 constexpr double kFromZero = 0.4;   // of the largest value: what changes by less is shown without zero
 constexpr double kConstant = 1e-3;  // and what changes by less than this with it
 
-// dashes and gaps along a line, points; one after another
-const std::vector<std::vector<double>> kDashes = {{},       {5, 2.2},  {1.2, 1.8}, {6, 1.8, 1.2, 1.8},
-                                                  {9, 2.5}, {2.6, 1.4}};
+constexpr double kTicksApart = 9;  // points: from a number of the values' axis to the next at least
+constexpr double kEachTick = 18;   // points: of the values' axis
+constexpr double kAboveEnd = 3;    // points: how high above the axis the middle of a name at an end is
 constexpr double kLeft = 0.05;  // of the width: a line that ends so far from the right is named where it ends
 constexpr int kMostDecades = 7;  // with a number each
 
@@ -42,12 +43,16 @@ struct Ticks {
   std::vector<std::string> numbers{};  // as mathematics
 };
 
-/// At powers of ten; ticks at 2, ..., 9 in between where there are few.
-Ticks decades(double low, double high) {
+/// At powers of ten; ticks at 2, ..., 9 in between where there are few. `apart`: of numbers, of the axis's
+/// length.
+Ticks decades(double low, double high, double apart) {
   Ticks all;
   const int first = int(std::floor(std::log10(low) + 1e-9)), last = int(std::ceil(std::log10(high) - 1e-9));
-  const int step = (last - first + kMostDecades - 1) / kMostDecades;
-  const bool few = last - first <= 2, plain = first >= -2 && last <= 4;
+  const double decade = 1 / std::log10(high / low);
+  int step = (last - first + kMostDecades - 1) / kMostDecades;
+  while (step * decade < apart && step <= last - first) ++step;
+  const bool plain = first >= -2 && last <= 4;
+  const bool few = last - first <= 2 && decade * std::log10(2) >= apart;
   for (int e = first; e <= last; ++e) {
     for (int digit = 1; digit < 10; ++digit) {
       const double x = digit * std::pow(10, e);
@@ -70,23 +75,58 @@ Ticks numbered(std::vector<double> marks) {
   return all;
 }
 
-/// Those of an axis of this width, in page units: three at least where their numbers find room.
+double widest(const Ticks& ticks, double point) {
+  double all = 0;
+  for (const std::string& each : ticks.numbers)
+    all = std::max(all, formula(each, kPlotType * point, {}).width);
+  return all;
+}
+
+/// Those of an axis of this width, in page units: three at least where their numbers find room, and fewer
+/// where they do not.
 Ticks along_axis(double low, double high, double width, double point) {
+  const auto fit = [&](const Ticks& all) {
+    if (all.marks.size() < 2) return true;
+    return (all.marks[1] - all.marks[0]) / (high - low) * width > widest(all, point) + kNumbersApart * point;
+  };
   const int usual = std::max(2, int(width / (kAcross * point)));
-  const Ticks few = numbered(ticks(low, high, usual));
+  Ticks few = numbered(ticks(low, high, usual));
   for (int count = usual; few.marks.size() < 3 && count < usual + 6; ++count) {
     const Ticks more = numbered(ticks(low, high, count));
     if (more.marks.size() < 3) continue;
-    double widest = 0;
-    for (const std::string& each : more.numbers)
-      widest = std::max(widest, formula(each, kTypeSize * point, {}).width);
-    const double apart = (more.marks[1] - more.marks[0]) / (high - low) * width;
-    return apart > widest + kNumbersApart * point ? more : few;
+    if (fit(more)) return more;
+    break;
   }
+  for (int count = usual; count > 1 && !fit(few); --count) few = numbered(ticks(low, high, count - 1));
+  if (!fit(few)) few.marks.resize(1), few.numbers.resize(1);
   return few;
 }
 
-Ticks upward(const PlotArea& area) { return area.log ? decades(area.low, area.high) : numbered(area.ticks); }
+/// Those of the values from `low` to `high` on an axis of this height: so few that their numbers do not
+/// touch.
+std::vector<double> up_axis(double low, double high, int usual, double height, double point) {
+  for (int count = usual; count > 0; --count) {
+    std::vector<double> found = ticks(low, high, count);
+    if (found.size() < 2 || (found[1] - found[0]) / (high - low) * height >= kTicksApart * point)
+      return found;
+  }
+  // one number, zero's where it is there
+  const std::vector<double> all = ticks(low, high, 1);
+  const bool zero = low <= 0 && high >= 0;
+  return {zero ? 0.0 : all.front()};
+}
+
+Ticks upward(const PlotArea& area) {
+  return area.log ? decades(area.low, area.high, kTicksApart * area.point / (area.bottom - area.top))
+                  : numbered(area.ticks);
+}
+
+Ticks across(const PlotArea& area) {
+  const double width = area.right - area.left;
+  if (!area.log) return along_axis(area.first, area.last, width, area.point);
+  const Ticks all = decades(area.first, area.last, 0);
+  return decades(area.first, area.last, (widest(all, area.point) + kNumbersApart * area.point) / width);
+}
 
 const std::vector<double>& along(const Plot& plot, const Series& line) {
   return line.along.empty() ? plot.times : line.along;
@@ -97,67 +137,6 @@ struct Range {
   double low = 1e300, high = -1e300;
   void take(double x) { low = std::min(low, x), high = std::max(high, x); }
 };
-
-/// A line of nodes in dashes that begin at its first.
-void add_dashed(const std::vector<Node>& nodes, const std::vector<double>& dashes, double point, List& list) {
-  if (dashes.empty()) {
-    list.add(nodes, Cap::round);
-    return;
-  }
-  std::size_t which = 0;
-  double left = dashes[0] * point;
-  std::vector<Node> dash{nodes.front()};
-  for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-    Point from = nodes[i].at;
-    const Point to = nodes[i + 1].at;
-    for (double way = (to - from).norm(); way > left; way = (to - from).norm()) {
-      from += left / way * (to - from);
-      Node node = nodes[i];
-      node.at = from;
-      if (which % 2 == 0) {
-        dash.push_back(node);
-        list.add(dash, Cap::butt);
-      }
-      dash = {node};
-      which = (which + 1) % dashes.size();
-      left = dashes[which] * point;
-    }
-    left -= (to - from).norm();
-    if (which % 2 == 0) dash.push_back(nodes[i + 1]);
-  }
-  if (which % 2 == 0 && dash.size() > 1) list.add(dash, Cap::butt);
-}
-
-/// What marks a value of a line of dots.
-void add_marker(int style, const Point& at, double radius, Color color, List& list) {
-  const auto corners = [&](int count, double first, double size) {
-    std::vector<Point> all;
-    for (int k = 0; k < count; ++k) {
-      const double a = first + 2 * std::numbers::pi * k / count;
-      all.push_back(at + size * radius * Point(std::cos(a), -std::sin(a)));
-    }
-    list.add(all, color);
-  };
-  switch (style % 4) {
-    case 0:
-      list.add(Disc{at, radius, 0, color, color});
-      break;
-    case 1:
-      corners(4, std::numbers::pi / 4, 1.3);
-      break;
-    case 2:
-      corners(3, std::numbers::pi / 2, 1.5);
-      break;
-    default:
-      corners(4, 0, 1.5);
-      break;
-  }
-}
-
-/// Whether its lines need names.
-bool named(const Plot& plot) {
-  return plot.lines.size() > 1 || plot.title.empty() || !plot.lines.front().note.empty();
-}
 
 /// The end of a line: its point farthest to the right, of those within the range that is given.
 Point end_of(const Plot& plot, const PlotArea& area, const Series& line) {
@@ -212,48 +191,20 @@ void tell_apart(Plot& plot) {
   for (std::size_t i = 0; i < plot.lines.size(); ++i) plot.lines[i].style = int(i);
 }
 
-std::vector<int> by_height(const std::vector<double>& wanted) {
-  std::vector<int> order(wanted.size());
+std::vector<std::size_t> painters_order(const Plot& plot) {
+  std::vector<std::size_t> order(plot.lines.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return wanted[std::size_t(a)] < wanted[std::size_t(b)]; });
+  std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return plot.lines[i].quiet; });
   return order;
-}
-
-std::vector<double> spread(const std::vector<double>& wanted, double apart, double low, double high,
-                           const std::vector<int>& order) {
-  // x_i + i apart must not decrease: averages of those that would (pool adjacent violators)
-  const std::size_t n = wanted.size();
-  struct Pool {
-    double sum = 0;
-    std::size_t count = 0;
-    double mean() const { return sum / double(count); }
-  };
-  std::vector<Pool> pools;
-  const auto number = [&](std::size_t i) { return std::size_t(order[i]); };
-  for (std::size_t i = 0; i < n; ++i) {
-    pools.push_back({wanted[number(i)] - double(i) * apart, 1});
-    while (pools.size() > 1 && pools[pools.size() - 2].mean() > pools.back().mean()) {
-      const Pool last = pools.back();
-      pools.pop_back();
-      pools.back().sum += last.sum, pools.back().count += last.count;
-    }
-  }
-  std::vector<double> found(n);
-  std::size_t i = 0;
-  for (const Pool& pool : pools)
-    for (std::size_t k = 0; k < pool.count; ++k, ++i) found[number(i)] = pool.mean() + double(i) * apart;
-  // within the ends
-  for (std::size_t k = n; k-- > 0;)
-    found[number(k)] = std::min(found[number(k)], high - double(n - 1 - k) * apart);
-  for (std::size_t k = 0; k < n; ++k) found[number(k)] = std::max(found[number(k)], low + double(k) * apart);
-  return found;
 }
 
 void share_margins(std::span<PlotArea*> areas) {
   double left = -1e300, right = 1e300;
   for (const PlotArea* area : areas) left = std::max(left, area->left), right = std::min(right, area->right);
-  for (PlotArea* area : areas) area->left = left, area->right = right;
+  for (PlotArea* area : areas) {
+    for (Point& entry : area->key) entry.x() += left - area->left;
+    area->left = left, area->right = right;
+  }
 }
 
 PlotArea plot_area(const Plot& plot, const Rect& rect, double point) {
@@ -272,7 +223,6 @@ PlotArea plot_area(const Plot& plot, const Rect& rect, double point) {
 
   if (plot.range && (!plot.log || plot.range->first > 0)) {
     area.low = plot.range->first, area.high = plot.range->second;
-    area.ticks = ticks(area.low, area.high, std::max(2, int(rect.height / (18 * point))));
   } else if (plot.log) {
     // by whole decades
     const double first = std::floor(std::log10(up.low) + 1e-9),
@@ -285,41 +235,45 @@ PlotArea plot_area(const Plot& plot, const Rect& rect, double point) {
     // a little room around what is there; none below zero if nothing is
     const double room = kHeadroom * (up.high - up.low);
     area.low = up.low == 0 ? 0 : up.low - room, area.high = up.high == 0 ? 0 : up.high + room;
-    area.ticks = ticks(area.low, area.high, std::max(2, int(rect.height / (18 * point))));
+  }
+
+  // exponents and fractions of the title stay below the upper edge
+  const Formula title = formula(plot.title, kPlotType * point, {});
+  area.top = rect.y + std::max(kPlotAbove * point, kTitleBaseline * point + title.ascent + 0.5 * point);
+  area.bottom = rect.y + rect.height - kBelow * point;
+  area.title = area.top - kTitleBaseline * point;
+  fit_names(plot, rect, rect.x + title.width, area);
+  if (!area.log) {
+    const int usual = std::max(
+        2, int((rect.height - (area.top - area.title - kTitleBaseline * point)) / (kEachTick * point)));
+    area.ticks = up_axis(area.low, area.high, usual, area.bottom - area.top, point);
   }
 
   // room for the numbers at the left, the names at the right
-  double numbers = 0, names = 0;
-  for (const std::string& each : upward(area).numbers)
-    numbers = std::max(numbers, formula(each, kTypeSize * point, {}).width);
-  if (named(plot))
-    for (const Series& each : plot.lines)
-      names =
-          std::max(names, formula(each.label + each.note, kTypeSize * point, each.color).width + 5 * point);
+  const double numbers = widest(upward(area), point);
+  double names = widest_name(plot, area) + 5 * point;
   // what it is over, right of the last number, which stands out by half of itself
-  names = std::max(names, formula(plot.name, kTypeSize * point, {}).width + 12 * point);
+  names = std::max(names, formula(plot.name, kPlotType * point, {}).width + 12 * point);
   area.left = rect.x + numbers + kTick * point + 3 * point;
   area.right = rect.x + rect.width - names;
-  // exponents and fractions of the title stay below the upper edge
-  const double high = formula(plot.title, kTypeSize * point, {}).ascent + 0.5 * point;
-  area.top = rect.y + std::max(kAbove * point, (kAbove - 7) * point + high),
-  area.bottom = rect.y + rect.height - kBelow * point;
 
   // the names at the right end; those of lines that leave the range stand where they do
   std::vector<double> ends;
   std::vector<std::size_t> there;
   area.names.assign(plot.lines.size(), area.top + kNamesApart / 2 * point);
+  std::vector<double> heights;
   for (std::size_t i = 0; i < plot.lines.size(); ++i)
     if (const Point end = end_of(plot, area, plot.lines[i]); !leaves(plot, area, end))
-      ends.push_back(end.y()), there.push_back(i);
-  const std::vector<double> heights =
-      spread(ends, kNamesApart * point, area.top, area.bottom - 3 * point, by_height(ends));
-  for (std::size_t i = 0; i < there.size(); ++i) area.names[there[i]] = heights[i];
+      ends.push_back(end.y()), there.push_back(i), heights.push_back(area.heights[i]);
+  const double half = kNamesApart / 2 * point;
+  const std::vector<double> middles =
+      spread(ends, heights, area.top - half, area.bottom - kAboveEnd * point + half, by_height(ends));
+  for (std::size_t i = 0; i < there.size(); ++i) area.names[there[i]] = middles[i];
   return area;
 }
 
 void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, List& list) {
-  const double type = kTypeSize * area.point, tick = kTick * area.point, axis = kAxis * area.point;
+  const double type = kPlotType * area.point, tick = kTick * area.point, axis = kAxis * area.point;
   const auto line = [&](const Point& a, const Point& b, double width, Color color) {
     list.add({{a, width, color}, {b, width, color}}, Cap::butt);
   };
@@ -346,25 +300,22 @@ void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, L
     line(p, p - Point(0.6 * tick, 0), 0.6 * axis, colours.ink);
   }
   if (area.low < 0) line(area.at(area.first, 0), area.at(area.last, 0), 0.3 * area.point, colours.hatch);
-  const Ticks across =
-      area.log ? decades(area.first, area.last) : along_axis(area.first, area.last, right - left, area.point);
+  const Ticks along = across(area);
   double reached = right;
-  for (std::size_t i = 0; i < across.marks.size(); ++i) {
-    const Point p{area.at(across.marks[i], area.low).x(), bottom};
+  for (std::size_t i = 0; i < along.marks.size(); ++i) {
+    const Point p{area.at(along.marks[i], area.low).x(), bottom};
     line(p, p + Point(0, tick), axis, colours.ink);
-    write(across.numbers[i], p + Point(0, tick + 7.5 * area.point), 0.5, colours.ink);
-    reached = std::max(reached, p.x() + formula(across.numbers[i], type, colours.ink).width / 2);
+    write(along.numbers[i], p + Point(0, tick + 7.5 * area.point), 0.5, colours.ink);
+    reached = std::max(reached, p.x() + formula(along.numbers[i], type, colours.ink).width / 2);
   }
-  for (const double mark : across.between) {
+  for (const double mark : along.between) {
     const Point p{area.at(mark, area.low).x(), bottom};
     line(p, p + Point(0, 0.6 * tick), 0.6 * axis, colours.ink);
   }
   write(plot.name, {reached + 5 * area.point, bottom + tick + 7.5 * area.point}, 0, colours.ink);
   // from where the widest number begins
-  double numbers = 0;
-  for (const std::string& each : up.numbers) numbers = std::max(numbers, formula(each, type, {}).width);
-  write(plot.title, {left - tick - 1.5 * area.point - numbers, area.top - (kAbove - 7) * area.point}, 0,
-        colours.ink);
+  write(plot.title, {left - tick - 1.5 * area.point - widest(up, area.point), area.title}, 0, colours.ink);
+  draw_key(plot, area, colours, list);
   for (const double mark : plot.marks)
     if (mark >= area.first && mark <= area.last)
       line(area.at(mark, area.low), area.at(mark, area.high), 0.3 * area.point, colours.hatch);
@@ -372,21 +323,24 @@ void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, L
 
 void draw_lines(const Plot& plot, const PlotArea& area, List& list, std::optional<int> number) {
   // a line that leaves the range is cut off there
-  const double half = kLine * area.point;
+  const double half = kPlotLine * area.point;
   if (plot.range)
     list.clip({area.left - half, area.top - half, area.right - area.left + 2 * half + kDotRadius * area.point,
                area.bottom - area.top + 2 * half});
-  for (const Series& each : plot.lines) {
+  for (const std::size_t which : painters_order(plot)) {
+    const Series& each = plot.lines[which];
     const std::vector<double>& way = along(plot, each);
     std::vector<Node> nodes;
     for (std::size_t i = 0; i < way.size() && i < each.values.size(); ++i)
       if (area.has(way[i], each.values[i]))
-        nodes.push_back({area.at(way[i], each.values[i]), kLine * each.weight * area.point, each.color});
+        nodes.push_back({area.at(way[i], each.values[i]), kPlotLine * each.weight * area.point, each.color});
     if (nodes.empty()) continue;
-    if (number) list.of({Subject::What::chart, (*number)++});
-    add_dashed(nodes, kDashes[std::size_t(each.style) % kDashes.size()], area.point, list);
+    if (number) list.of({Subject::What::chart, *number + int(which)});
+    add_dashed(nodes, each.style, area.point, list);
+    if (!plot.dotted) add_markers_along(nodes, each.style, area.point, list);
     for (const Node& node : nodes)
-      if (plot.dotted) add_marker(each.style, node.at, kDotRadius * area.point, each.color, list);
+      if (plot.dotted)
+        add_marker(value_marker_of(each.style), node.at, kDotRadius * area.point, each.color, list);
   }
   if (plot.range) list.unclip();
 }
@@ -402,20 +356,10 @@ void draw_dots(const Plot& plot, const PlotArea& area, const Palette& colours, L
     list.add(Disc{p, kDotRadius * unit, 0, colours.ink, colours.ink});
     // at the right end above it, where the line's name is beside it
     const bool last = p.x() > area.right - 10 * unit;
-    const Formula f = formula(dot.label, kTypeSize * unit, colours.ink);
+    const Formula f = formula(dot.label, kPlotType * unit, colours.ink);
     add(f, p + (last ? Point(-f.width / 2, -5 * unit) : Point(3.5 * unit, -2.5 * unit)), list,
         {last ? Align::center : Align::left});
   }
-}
-
-void draw_name(const Plot& plot, std::size_t line, const PlotArea& area, const Point& at,
-               const Palette& colours, List& list, double seen) {
-  if (!named(plot) || !(seen > 0)) return;
-  const Series& its = plot.lines[line];
-  Color color = legible(its.color, colours);
-  color.a = std::uint8_t(std::lround(color.a * std::min(seen, 1.0)));
-  add(formula(its.label + its.note, kTypeSize * area.point, color),
-      at + Point(0, 0.24 * kTypeSize * area.point), list);
 }
 
 void draw_names(const Plot& plot, const PlotArea& area, const Palette& colours, List& list) {

@@ -20,9 +20,11 @@ struct Series {
   std::string note{};           // after its label
   int style = 0;                // which dashes, and which marker: lines are told apart without their colours
   double weight = 1;            // of the line
+  bool quiet = false;           // others are to be looked at: it lies under them
 };
 
-/// Values over time or another quantity, with axes, ticks at round numbers and each line's name at its end.
+/// Values over time or another quantity, with axes, ticks at round numbers and each line's name at its end,
+/// or in a key.
 struct Plot {
   struct Dot {
     double along = 0, value = 0;
@@ -47,6 +49,10 @@ struct PlotArea {
   bool log = false;                                 // both axes
   std::vector<double> ticks;                        // of the values
   std::vector<double> names;                        // one a line: the height of its name's middle
+  double title = 0;                                 // page units: its baseline
+  double names_type = 1;                            // of the type's size: that of names
+  std::vector<double> heights;                      // page units: of names, one a line
+  std::vector<Point> key;  // where each line's entry in a key begins; none: names are beside their lines
 
   Point at(double along, double value) const;
   /// Whether it has a place there.
@@ -71,23 +77,29 @@ void tell_apart(Plot& plot);
 /// The order of heights from the least on, equal ones in the order of their numbers.
 std::vector<int> by_height(const std::vector<double>& wanted);
 
-/// As near as they can be to where they are wanted, `apart` from each other, from `low` to `high`, in this
-/// order.
-std::vector<double> spread(const std::vector<double>& wanted, double apart, double low, double high,
-                           const std::vector<int>& order);
+/// As near as they can be to where they are wanted, in this order and off each other: the middles of names of
+/// these heights, which reach from `low` to `high` at most.
+std::vector<double> spread(const std::vector<double>& wanted, const std::vector<double>& heights, double low,
+                           double high, const std::vector<int>& order);
 
-/// Axes, ticks, units and marks.
+/// The numbers of the lines, those first that lie under the others.
+std::vector<std::size_t> painters_order(const Plot& plot);
+
+/// Axes, ticks, units and marks, and the key where there is one.
 void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, List& list);
 /// The lines, as far as there are values.
 void draw_lines(const Plot& plot, const PlotArea& area, List& list, std::optional<int> number = {});
 /// The dots with names.
 void draw_dots(const Plot& plot, const PlotArea& area, const Palette& colours, List& list);
-/// The names of the lines, beside their ends. A line that is alone is named by its axis.
+/// The names of the lines, beside their ends. A line that is alone is named by its axis; names in a key are
+/// not here.
 void draw_names(const Plot& plot, const PlotArea& area, const Palette& colours, List& list);
 /// One of them, with its left end's middle at `at`. `seen`: from 0, not at all, to 1.
 void draw_name(const Plot& plot, std::size_t line, const PlotArea& area, const Point& at,
                const Palette& colours, List& list, double seen = 1);
 inline constexpr double kNamesApart = 10;  // points
+inline constexpr double kPlotLine = 1;     // points: how wide a line is
+inline constexpr double kPlotAbove = 17;   // points: room for the title above the axis
 
 /// Puts plots down in rectangles of a sheet under each other (kPoint units a point), with type so much
 /// larger: all of the above.

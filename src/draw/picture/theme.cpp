@@ -9,7 +9,8 @@ namespace {
 constexpr Color kWhite{0xFF, 0xFF, 0xFF}, kBlack{0, 0, 0};
 constexpr double kFaint = 0.75;  // luminance: white is 1
 constexpr double kFaintestInk = 0.15;
-constexpr double kLegible = 4.5;  // contrast
+constexpr double kLegible = 4.5;                         // contrast
+constexpr double kStrongShade = 0.5, kFaintShade = 3;  // part of the way to the ink; contrast to the room
 
 }  // namespace
 
@@ -77,6 +78,15 @@ Color legible(Color own, const Palette& colours) {
     return words;
   }
   return colours.ink;
+}
+
+Color shade(Color own, double part, const Palette& colours) {
+  const Color strong = mix(own, colours.ink, kStrongShade);
+  Color faint = own;
+  for (int percent = 5; percent <= 60; percent += 5)
+    if (const Color c = mix(own, colours.room, percent / 100.0); contrast(c, colours.room) >= kFaintShade)
+      faint = c;
+  return part < 0.5 ? mix(strong, own, 2 * part) : mix(own, faint, 2 * part - 1);
 }
 
 Color turn(int index) {

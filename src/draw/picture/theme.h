@@ -52,6 +52,10 @@ Color faintest(Color strong, const Palette& colours);
 /// of 4.5 to the room's colour. Its alpha stays.
 Color legible(Color own, const Palette& colours);
 
+/// A shade of a colour of lines: from `part` 0, nearer to the ink, to 1, nearer to the room, from which it
+/// still stands out.
+Color shade(Color own, double part, const Palette& colours);
+
 /// The colours that bodies without one take in turn. Vermilion is left to forces.
 Color turn(int index);
 

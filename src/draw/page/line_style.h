@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "draw/picture/list.h"
+
+namespace obscura::draw {
+
+/// Lines of a plot are told apart without their colours: by six kinds of dashes, and from the seventh line on
+/// by markers along them, too.
+inline constexpr int kStyles = 24;
+
+/// The marker along a line of a style and at its head: 0 a disc, which is at the head alone, then a square, a
+/// triangle, a diamond.
+int marker_of(int style);
+
+/// That of a line with a marker at each value: other ones for lines beside each other.
+int value_marker_of(int style);
+
+/// A marker of about this radius.
+void add_marker(int marker, const Point& at, double radius, Color color, List& list);
+
+/// A line in the dashes of its style, which begin at its first node. `point`: page units.
+void add_dashed(const std::vector<Node>& nodes, int style, double point, List& list);
+
+/// The markers of its style along a line: at the same places however long it has grown.
+void add_markers_along(const std::vector<Node>& nodes, int style, double point, List& list);
+
+}  // namespace obscura::draw

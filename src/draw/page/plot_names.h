@@ -1,0 +1,30 @@
+#pragma once
+
+#include "draw/page/plot.h"
+
+namespace obscura::draw {
+
+inline constexpr double kPlotType = 8.5;      // points: em of all words of a plot
+inline constexpr double kNameMiddle = 0.24;   // of the em: from the baseline up to the middle of a name
+inline constexpr double kTitleBaseline = 10;  // points: from the axis up to its title's baseline
+
+/// Whether lines need names. One that is alone is named by its axis.
+bool named(const Plot& plot);
+
+/// Finds room for the names of lines in an area whose top and bottom are known: beside their ends, smaller
+/// where there are many; where that would be too small, in rows of a key under and beside the title, which
+/// ends at `title_right`, above the area, whose top goes down.
+void fit_names(const Plot& plot, const Rect& rect, double title_right, PlotArea& area);
+/// The same, but in a key at any rate.
+void lay_key(const Plot& plot, const Rect& rect, double title_right, PlotArea& area);
+
+/// Puts the key down.
+void draw_key(const Plot& plot, const PlotArea& area, const Palette& colours, List& list);
+
+/// How wide the widest name is, as it stands beside its line; 0 in a key.
+double widest_name(const Plot& plot, const PlotArea& area);
+
+/// From where to where names beside their lines may reach.
+std::pair<double, double> room_for_names(const PlotArea& area);
+
+}  // namespace obscura::draw
