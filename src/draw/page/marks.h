@@ -87,6 +87,7 @@ struct Marks {
     std::vector<int> with{};
     // where it has several arrows at once: what they are of, in the order of their numbers
     std::vector<int> numbered{};
+    bool quiet = false;  // grey, for others than its body are to be looked at
   };
   struct Angle {
     int body = -1;                     // its own angle, or

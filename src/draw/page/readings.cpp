@@ -282,6 +282,7 @@ Color inked(Color color, const Palette& colours) { return color == Color{0, 0, 0
 
 Color color_of(const Marks::Vector& vector, const Palette& colours) {
   if (vector.color) return inked(*vector.color, colours);
+  if (vector.quiet) return colours.quiet;
   switch (vector.quantity) {
     case Quantity::position:
       return mix(*color("blue"), colours.ink, 0.3);

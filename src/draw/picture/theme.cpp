@@ -9,7 +9,8 @@ namespace {
 constexpr Color kWhite{0xFF, 0xFF, 0xFF}, kBlack{0, 0, 0};
 constexpr double kFaint = 0.75;  // luminance: white is 1
 constexpr double kFaintestInk = 0.15;
-constexpr double kLegible = 4.5;                         // contrast
+constexpr double kHushedLink = 0.5;
+constexpr double kLegible = 4.5;                       // contrast
 constexpr double kStrongShade = 0.5, kFaintShade = 3;  // part of the way to the ink; contrast to the room
 
 }  // namespace
@@ -60,6 +61,14 @@ Paint paint(Color own, Theme theme) {
 void hush(Paint& paint, const Palette& colours) {
   for (Color* color : {&paint.fill, &paint.outline, &paint.axis, &paint.trail})
     *color = mix(*color, colours.room, kHushed);
+}
+
+Color link_color(const Look& look, const Palette& colours, int a, int b) {
+  const auto quiet = [&](int body) {
+    return std::size_t(body) < look.bodies.size() && look.bodies[std::size_t(body)].quiet;
+  };
+  const bool all = (a >= 0 || b >= 0) && (a < 0 || quiet(a)) && (b < 0 || quiet(b));
+  return all ? mix(colours.spring, colours.room, kHushedLink) : colours.spring;
 }
 
 Color faintest(Color strong, const Palette& colours) {

@@ -44,6 +44,10 @@ Paint paint(Color color, Theme theme);
 void hush(Paint& paint, const Palette& colours);
 inline constexpr double kHushed = 0.35;
 
+/// The colour of a spring or a joint between two bodies, or a body and the room (-1). It recedes where
+/// neither is to be looked at.
+Color link_color(const Look& look, const Palette& colours, int a, int b);
+
 /// What a trail of this colour fades to: nearer to the room's colour than it, but by contrast as far from it
 /// as 15 % of the way to the ink is, or not faded at all.
 Color faintest(Color strong, const Palette& colours);

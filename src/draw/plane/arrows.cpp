@@ -153,12 +153,14 @@ void draw_arrows(const std::vector<Arrow>& arrows, double weight, Color room, Co
 
 void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   std::vector<Arrow> arrows;
+  std::vector<Color> inks;
   for (int i : stage.arrows) {
     const sim::Snapshot::Body& body = now.bodies[i];
     offer(view.page(body.position), view.page(body.position + stage.look.velocity_scale * body.velocity),
           view.window, stage.layout.weight, arrows);
+    inks.resize(arrows.size(), stage.looks(i).quiet ? stage.colours.quiet : stage.colours.velocity);
   }
-  draw_arrows(arrows, stage.layout.weight, stage.colours.room, stage.colours.velocity, list);
+  draw_arrows(arrows, inks, stage.layout.weight, stage.colours.room, list);
 }
 
 std::vector<Push> pushes(const sim::SceneInfo& cast, const Look& look, const sim::Snapshot& now) {

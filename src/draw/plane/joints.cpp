@@ -16,6 +16,10 @@
 namespace obscura::draw {
 namespace {
 
+Color color_of_joint(const Stage& stage, std::size_t i) {
+  return link_color(stage.look, stage.colours, stage.cast.joints[i].a, stage.cast.joints[i].b);
+}
+
 using sim::Vec3;
 
 constexpr double kStop = 9;   // page units: half a rail's end
@@ -312,16 +316,15 @@ void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, 
 
 void draw_arms(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   const double weight = stage.layout.weight, width = kRod * weight;
-  const Color color = stage.colours.spring;
   for (const Arm& arm : arms(stage.cast, now, kArmBeyond * weight / view.scale)) {
     list.of({Subject::What::joint, arm.joint});
+    const Color color = color_of_joint(stage, std::size_t(arm.joint));
     list.add({{view.page(arm.from), width, color}, {view.page(arm.to), width, color}}, Cap::round);
   }
 }
 
 void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   const double weight = stage.layout.weight;
-  const Color color = stage.colours.spring;
   Point down = Point(stage.cast.gravity.x(), -stage.cast.gravity.y());
   down = down.norm() > 0 ? down.normalized() : Point(0, 1);
   std::vector<Node> nodes;
@@ -331,6 +334,7 @@ void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, L
     if (!spans(joint_look(joint.kind).plane) || !joint.places.empty() || now.joints[i].broken) continue;
     const Point a = view.page(now.joints[i].a), b = view.page(now.joints[i].b);
     const double width = (rope ? kRope : kRod) * weight, whole = joint.length * view.scale;
+    const Color color = color_of_joint(stage, i);
     nodes.clear();
     if (rope && whole > (b - a).norm() + 0.05) {
       const double s = sag(a, b, down, whole);
@@ -346,6 +350,7 @@ void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, L
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
     const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
     if (!spans(joint_look(joint.kind).plane) || !joint.places.empty() || now.joints[i].broken) continue;
+    const Color color = color_of_joint(stage, i);
     for (const auto& [body, at] :
          {std::pair(joint.a, now.joints[i].a), std::pair(joint.b, now.joints[i].b)}) {
       const double radius = (body < 0 ? kPin : kJoint) * weight;
@@ -423,7 +428,7 @@ void draw_pins(const Stage& stage, const View& view, const sim::Snapshot& now, L
     // a ring; filled where it is fast to the room
     list.of({Subject::What::joint, int(i)});
     const bool fast = joint.b < 0;
-    const Color color = stage.colours.spring;
+    const Color color = color_of_joint(stage, i);
     list.add(Disc{at, radius, 0.38 * radius, fast ? color : stage.colours.room, color});
   }
 }

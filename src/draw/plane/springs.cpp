@@ -35,6 +35,10 @@ bool holds_solid(const Stage& stage, const sim::SceneInfo::Spring& spring) {
   return stage.solid(spring.a) || stage.solid(spring.b);
 }
 
+Color color_of_spring(const Stage& stage, std::size_t i) {
+  return link_color(stage.look, stage.colours, stage.cast.springs[i].a, stage.cast.springs[i].b);
+}
+
 }  // namespace
 
 Coil coil(double rest, double weight) {
@@ -93,32 +97,33 @@ void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now
     if (now.springs[i].loose || holds_solid(stage, stage.cast.springs[i]) != solids) continue;
     const Point a = view.page(now.springs[i].a), b = view.page(now.springs[i].b);
     const Coil& form = stage.coils[i];
+    const Color color = color_of_spring(stage, i);
     nodes.clear();
     list.of({Subject::What::spring, int(i)});
     Winding winding;
     if (form.turns == 0) {
       const double width = std::min(kNetLine * weight, std::max(0.9 * weight, 0.09 * form.rest * zoom));
-      nodes = {{a, width, stage.colours.spring}, {b, width, stage.colours.spring}};
+      nodes = {{a, width, color}, {b, width, color}};
     } else {
       const double width = line_width(form, (b - a).norm(), zoom);
-      for (const Point& p : coil_line(form, a, b, zoom)) nodes.push_back({p, width, stage.colours.spring});
+      for (const Point& p : coil_line(form, a, b, zoom)) nodes.push_back({p, width, color});
       winding = draw::winding(form, (b - a).norm(), zoom);
     }
     list.add(nodes, Cap::round, Blend::over, false, winding);
   }
 
   // made fast to the room or a body that turns; a particle covers the end itself
-  auto joint = [&](int body, const Point& at, const Coil& form) {
+  auto joint = [&](int body, const Point& at, const Coil& form, Color color) {
     if (body >= 0 && !stage.solid(body)) return;
     const double radius = (form.turns == 0 ? 0.75 : 1) * kJoint * weight;
-    list.add(Disc{at, radius, 0, stage.colours.spring, stage.colours.spring});
+    list.add(Disc{at, radius, 0, color, color});
   };
   for (std::size_t i = 0; i < now.springs.size(); ++i) {
     const sim::SceneInfo::Spring& spring = stage.cast.springs[i];
     if (now.springs[i].loose || holds_solid(stage, spring) != solids) continue;
     list.of({Subject::What::spring, int(i)});
-    joint(spring.a, view.page(now.springs[i].a), stage.coils[i]);
-    joint(spring.b, view.page(now.springs[i].b), stage.coils[i]);
+    joint(spring.a, view.page(now.springs[i].a), stage.coils[i], color_of_spring(stage, i));
+    joint(spring.b, view.page(now.springs[i].b), stage.coils[i], color_of_spring(stage, i));
   }
 }
 

@@ -217,12 +217,14 @@ void draw_space_arrows(SpaceFrame& s) {
   draw_arrows(arrows, weight, stage.colours.room, stage.colours.force, s.list);
   s.list.of({Subject::What::layer, 3});
   arrows.clear();
+  std::vector<Color> inks;
   for (std::size_t i = 0; i < stage.look.bodies.size() && i < s.now.bodies.size(); ++i) {
     if (!stage.look.bodies[i].velocity) continue;
     const sim::Snapshot::Body& body = s.now.bodies[i];
     arrow(body.position, body.position + stage.look.velocity_scale * body.velocity);
+    inks.resize(arrows.size(), stage.look.bodies[i].quiet ? stage.colours.quiet : stage.colours.velocity);
   }
-  draw_arrows(arrows, weight, stage.colours.room, stage.colours.velocity, s.list);
+  draw_arrows(arrows, inks, weight, stage.colours.room, s.list);
 }
 
 void draw_space_gone(SpaceFrame& s) {

@@ -51,13 +51,13 @@ std::vector<Vec3> helix(const Coil& form, const Vec3& a, const Vec3& b, double w
   return way;
 }
 
-void add_coil(SpaceFrame& s, const Coil& form, const Vec3& a, const Vec3& b, int number) {
+void add_coil(SpaceFrame& s, const Coil& form, const Vec3& a, const Vec3& b, Color color, int number) {
   const double page = s.lens.scale;  // page units a metre, where the camera looks
   const double length = (b - a).norm();
   const double weight = s.stage.layout.weight;
   if (form.turns == 0) {
     const double radius = 0.5 * kNetLine * weight * s.zoom / page;
-    add_tube(s, {a, b}, radius, s.stage.colours.spring, number);
+    add_tube(s, {a, b}, radius, color, number);
     s.rods.push_back({a, b, radius});
     return;
   }
@@ -67,8 +67,8 @@ void add_coil(SpaceFrame& s, const Coil& form, const Vec3& a, const Vec3& b, int
   const double whole = amplitude(form, length * page, s.zoom);
   const double wide = whole * std::clamp(seen / (kEndOn * whole), kNarrow, 1.0) / page;
   const std::vector<Vec3> way = helix(form, a, b, wire, wide);
-  const Solids::Tube coil{{a, b}, wire, s.stage.colours.spring, {form.turns, 0, whole}};
-  add_tube(s, way, wire, s.stage.colours.spring, number, 1, &coil);
+  const Solids::Tube coil{{a, b}, wire, color, {form.turns, 0, whole}};
+  add_tube(s, way, wire, color, number, 1, &coil);
   if (length < 1e-9) return;
   // its leads, and what it winds around, of which its wire covers a part
   double wound = 0;
@@ -91,16 +91,18 @@ void add_links(SpaceFrame& s) {
   for (const Piece& piece : s.stage.pieces)
     least[std::size_t(piece.body)] = std::min(least[std::size_t(piece.body)], piece.least);
   const auto slender = [&](int body) { return body < 0 ? 1e300 : least[std::size_t(body)]; };
-  const auto knob = [&](int body, const Vec3& at, double radius) {
-    if (body < 0 || cast.bodies[body].turns) add_ball(s, at, radius * weight * metre, color, number);
+  const auto between = [&](int a, int b) { return link_color(s.stage.look, s.stage.colours, a, b); };
+  const auto knob = [&](int body, const Vec3& at, double radius, Color own) {
+    if (body < 0 || cast.bodies[body].turns) add_ball(s, at, radius * weight * metre, own, number);
   };
   for (std::size_t i = 0; i < s.now.springs.size() && i < cast.springs.size(); ++i, ++number) {
     const auto& at = s.now.springs[i];
     if (at.loose) continue;
-    add_coil(s, s.stage.coils[i], at.a, at.b, number);
+    const Color own = between(cast.springs[i].a, cast.springs[i].b);
+    add_coil(s, s.stage.coils[i], at.a, at.b, own, number);
     const double joint = (s.stage.coils[i].turns == 0 ? 0.75 : 1) * kJoint;
-    knob(cast.springs[i].a, at.a, joint);
-    knob(cast.springs[i].b, at.b, joint);
+    knob(cast.springs[i].a, at.a, joint, own);
+    knob(cast.springs[i].b, at.b, joint, own);
   }
   for (std::size_t i = 0; i < s.now.joints.size() && i < cast.joints.size(); ++i, ++number) {
     const sim::SceneInfo::Joint& joint = cast.joints[i];
@@ -117,7 +119,7 @@ void add_links(SpaceFrame& s) {
         add_tube(s, way, radius, color, number);
         for (std::size_t k = 1; k < way.size(); ++k) s.rods.push_back({way[k - 1], way[k], radius});
         for (const sim::SceneInfo::Joint::Place& it : joint.places)
-          knob(it.body, place_of(s.now, it), it.body < 0 ? kPin : kJoint);
+          knob(it.body, place_of(s.now, it), it.body < 0 ? kPin : kJoint, color);
         break;
       }
       case JointMark::line:
@@ -128,10 +130,11 @@ void add_links(SpaceFrame& s) {
         const bool slack = rope && joint.length > (at.b - at.a).norm() * (1 + 1e-6);
         const std::vector<Vec3> way =
             slack ? hanging_rope(at.a, at.b, down, joint.length) : std::vector<Vec3>{at.a, at.b};
-        add_tube(s, way, radius, color, number);
+        const Color own = between(joint.a, joint.b);
+        add_tube(s, way, radius, own, number);
         for (std::size_t k = 1; k < way.size(); ++k) s.rods.push_back({way[k - 1], way[k], radius});
-        knob(joint.a, at.a, kJoint);
-        knob(joint.b, at.b, joint.b < 0 ? kPin : kJoint);
+        knob(joint.a, at.a, kJoint, own);
+        knob(joint.b, at.b, joint.b < 0 ? kPin : kJoint, own);
         break;
       }
       case JointMark::rail: {
@@ -171,7 +174,7 @@ void add_links(SpaceFrame& s) {
   for (std::size_t i = 0; i < s.now.mice.size() && s.stage.look.pointer; ++i, ++number) {
     const sim::Snapshot::Mouse& mouse = s.now.mice[i];
     if (!mouse.pressed || mouse.body < 0) continue;
-    add_coil(s, s.stage.hands[i], mouse.held, mouse.pointer, number);
+    add_coil(s, s.stage.hands[i], mouse.held, mouse.pointer, color, number);
     add_ball(s, mouse.held, kJoint * weight * metre, color, number);
   }
   for (const Arm& arm : arms(cast, s.now, kArmBeyond * weight * metre)) {
