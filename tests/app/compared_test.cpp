@@ -128,6 +128,21 @@ TEST_F(Compared, PanelsHaveOneScaleOneClockAndALineEach) {
   }
 }
 
+// A panel of nine is so small that its words would be too: they are at least 1/54 of the page high.
+TEST_F(Compared, WordsInSmallPanelsAreRead) {
+  const scene::Scene scene = scene::parse(
+      std::string(kSpring) + "[film]\nvary = \"physics.rate=30:110:10\"\n" + kEnergy, "a.toml", {});
+  const std::vector<Ahead::Run> runs = app::compared(scene);
+  ASSERT_EQ(runs.size(), 9u);
+  for (const Ahead::Run& run : runs) {
+    const double aspect = double(run.scene.film.width) / run.scene.film.height;
+    const double weight = draw::page_weight(aspect) * run.scene.look.weight;
+    const double em = draw::kAnnotationType * draw::film_lettering(weight, run.scene.look.type_scale).point;
+    EXPECT_GE(em * run.panel.height / 1080, 1080.0 / 54);
+    EXPECT_LE(em * run.panel.height / 1080, 1080.0 / 38);
+  }
+}
+
 TEST_F(Compared, OverEachOtherThePageIsThatOfOneRun) {
   scene(std::string(kSpring) + kVary + "vary_place = \"over\"\n" + kEnergy);
   const Outcome run = obscura("render scene.toml --at 1 -o over.png --size 320x180 --progress none");

@@ -9,6 +9,7 @@
 #include "app/run/origin.h"
 #include "app/run/run_marks.h"
 #include "app/run/variation.h"
+#include "draw/compose/annotate.h"
 #include "draw/compose/comparison.h"
 #include "draw/page/layout.h"
 #include "draw/plane/stage.h"
@@ -19,6 +20,7 @@ namespace {
 
 constexpr std::int64_t kMostRuns = 16;
 constexpr double kHeaviest = 2;         // of lines in small panels
+constexpr double kLeastType = 21;       // page units: em of their words
 constexpr double kAcrossInSpace = 1.5;  // a panel's width over its height
 
 Variations variations_of(const scene::Scene& scene) {
@@ -119,6 +121,11 @@ std::vector<Ahead::Run> compared(const scene::Scene& scene) {
                          draw::page_weight(double(one.film.width) / one.film.height) /
                          draw::page_weight(aspect);
     one.look.weight = std::clamp(1 / small, 1.0, kHeaviest);
+    // words in a small panel are still read from the back row
+    const double weight = one.look.weight * draw::page_weight(double(one.film.width) / one.film.height);
+    const double type = draw::kAnnotationType * draw::film_lettering(weight, one.look.type_scale).point *
+                        panels[i].height / 1080;
+    one.look.type_scale *= std::max(1.0, kLeastType / type);
     one.film.charts.clear(), one.film.titles = {};
   }
   return runs;

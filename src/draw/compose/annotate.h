@@ -59,6 +59,9 @@ struct Lettering {
   double pixel = 0;                          // page units; words keep to whole ones; 0: there are none
 };
 
+/// The em of annotations, points.
+inline constexpr double kAnnotationType = 10;
+
 /// Of a film, at a weight and a scale of its type.
 Lettering film_lettering(double weight, double type_scale, int rows = 0);
 

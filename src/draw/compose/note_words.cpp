@@ -15,7 +15,6 @@ namespace obscura::draw {
 namespace {
 
 // points
-constexpr double kType = 10;   // em
 constexpr double kThin = 0.5;  // of angles and lengths
 constexpr double kDotRadius = 1.7, kGap = 2.2;
 constexpr double kMillimetre = 72 / 25.4;
@@ -50,7 +49,7 @@ Notes::Notes(const sim::SceneInfo& cast, const Palette& colours, const Projectio
       placing_(projection.window(), how.plan || how.survey ? kMargin : kMarginInPrint),
       point_(how.lettering.point),
       arrow_(how.lettering.arrow),
-      type_(kType * point_),
+      type_(kAnnotationType * point_),
       thin_(kThin * point_),
       dot_radius_(kDotRadius * point_),
       gap_(kGap * point_),
