@@ -11,10 +11,13 @@
 #include "scene/fields.h"
 #include "scene/links.h"
 #include "scene/picture.h"
+#include "scene/scene.h"
 
 namespace obscura::scene {
 
 namespace {
+
+constexpr double kLowestAxis = 0.05;  // of the picture's height: that of a plot
 
 // why a quantity of the whole room goes with no body
 std::string of_room(std::string_view name) {
@@ -419,6 +422,26 @@ std::vector<draw::Chart> charts(const Node& top, const Seating<D>& roster, const
     all.push_back(chart);
   }
   return all;
+}
+
+void refuse_low_plots(const Node& top, const Film& film, double type_scale, Diagnostics& complaints) {
+  if (film.charts.empty() || !complaints.none()) return;
+  const double aspect = double(film.width) / film.height;
+  const double foot = draw::laid_out(film.titles, aspect, type_scale).foot;
+  const std::vector<double> heights = draw::Charts::axis_heights(film.charts, aspect, foot, type_scale);
+  const std::vector<Node>& nodes = tables(Fields::of(top, "film"), "plot");
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    if (heights[i] >= kLowestAxis * 1080) continue;
+    const bool right = film.charts[i].place == draw::Chart::Place::right;
+    complaints.add(
+        Fields(nodes[i], "film.plot").place("size"),
+        fmt::format(
+            "there is no room for this plot: its axis would be {:.0f} of the picture's {} pixels high; {}",
+            std::max(0.0, heights[i] * film.height / 1080), film.height,
+            right ? "put fewer plots at the right, or give those below a smaller 'size'"
+                  : "give it a larger 'size'"));
+    return;
+  }
 }
 
 template <int D>

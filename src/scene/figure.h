@@ -12,6 +12,8 @@
 
 namespace obscura::scene {
 
+struct Film;
+
 /// The scene's [figure]. Reports names that do not exist. `names`: what those of walls, joints and springs
 /// mean.
 template <int D>
@@ -29,6 +31,8 @@ std::vector<draw::Caption> captions(const Node& top, const Seating<D>& roster, c
                                     const draw::Pace& speed, Diagnostics& complaints);
 
 /// The scene's [[film.plot]]s.
+/// Complains of the first plot of a film whose axis would be too low to read.
+void refuse_low_plots(const Node& top, const Film& film, double type_scale, Diagnostics& complaints);
 template <int D>
 std::vector<draw::Chart> charts(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
                                 Diagnostics& complaints);

@@ -300,8 +300,13 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   scene.figure = figure<D>(names, roster, world, complaints);
   scene.film.marks = film_marks<D>(names, roster, world, scene.film.speed, complaints);
   scene.figure.names = scene.film.marks.names = draw::names_of(scene.look);
+  for (auto* vectors : {&scene.figure.vectors, &scene.film.marks.vectors})
+    for (draw::Marks::Vector& vector : *vectors)
+      vector.quiet = std::size_t(vector.body) < scene.look.bodies.size() &&
+                     scene.look.bodies[std::size_t(vector.body)].quiet;
   scene.film.titles.captions = captions<D>(top, roster, world, scene.film.speed, complaints);
   scene.film.charts = charts<D>(top, roster, world, complaints);
+  refuse_low_plots(top, scene.film, scene.look.type_scale, complaints);
 
   // overlaps may follow from other errors: report them only if there are none
   if (complaints.none() && model.collision != sim::Collision::handout)

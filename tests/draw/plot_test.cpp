@@ -13,7 +13,9 @@
 
 #include "draw/page/layout.h"
 #include "draw/page/measure.h"
+#include "draw/page/names_around.h"
 #include "draw/page/names_beside.h"
+#include "draw/page/readings.h"
 #include "draw/picture/formula.h"
 
 namespace obscura::draw {
@@ -401,6 +403,91 @@ TEST(Plot, NamesChangePlacesWhereTheirLinesMeet) {
   ASSERT_EQ(places.changes[0].size(), 1u);
   EXPECT_NEAR(double(places.changes[0][0]), 401, 2);
   for (const auto& changes : names_beside(narrow, {10, 10}, 0, 100).changes) EXPECT_TRUE(changes.empty());
+}
+
+// A line that comes back on itself, above another: names keep off both, off the heads and off each other, and
+// hardly ever change their sides.
+TEST(Plot, NamesAgainstAQuantityKeepOffLinesAndEachOther) {
+  constexpr std::size_t kInstants = 900;
+  const auto run = [&](double apart) {
+    std::vector<std::vector<Point>> heads;
+    for (std::size_t k = 0; k < kInstants; ++k) {
+      const double angle = 2 * std::numbers::pi * 3 * double(k) / kInstants;
+      const Point at(500 - 300 * std::cos(angle), 200 + 20 * std::cos(angle));
+      heads.push_back({at, at + Point(0, apart)});
+    }
+    return heads;
+  };
+  const std::vector<Point> sizes{{80, 20}, {90, 20}};
+  const Rect bounds{0, 0, 1000, 400};
+  const auto heads = run(90);
+  const NamesAround found = names_around(heads, sizes, bounds, 10, 2);
+  EXPECT_TRUE(found.clear);
+  std::size_t struck = 0;
+  for (std::size_t k = 0; k < kInstants; ++k) {
+    std::vector<Rect> boxes;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Point left = heads[k][i] + found.offsets[i][k];
+      boxes.push_back({left.x(), left.y() - 10, sizes[i].x(), sizes[i].y()});
+      const Rect& box = boxes.back();
+      EXPECT_GE(box.x, bounds.x - 1e-9);
+      EXPECT_LE(box.x + box.width, bounds.width + 1e-9);
+      const auto within = [&](const Point& p) {
+        return p.x() > box.x && p.x() < box.x + box.width && p.y() > box.y && p.y() < box.y + box.height;
+      };
+      bool on = false;
+      for (std::size_t j = 0; j < 2; ++j)
+        for (std::size_t past = 0; past <= k; ++past) on = on || within(heads[past][j]);
+      struck += on;
+      const bool changed = k > 0 && found.offsets[i][k] != found.offsets[i][k - 1];
+      EXPECT_EQ(changed, std::count(found.changes[i].begin(), found.changes[i].end(), k) > 0);
+    }
+    EXPECT_TRUE(boxes[0].y + 20 <= boxes[1].y + 1e-9 || boxes[1].y + 20 <= boxes[0].y + 1e-9 ||
+                boxes[0].x + 80 <= boxes[1].x || boxes[1].x + 90 <= boxes[0].x);
+  }
+  EXPECT_LE(double(struck), 0.04 * kInstants);
+  // where there is no room at all, it says so
+  EXPECT_FALSE(names_around(heads, sizes, {0, 170, 1000, 60}, 10, 2).clear);
+}
+
+/// Names that would be in the way wherever they stood are a key.
+TEST(Charts, NamesWithoutRoomAreAKey) {
+  const auto key_of = [](double second) {
+    Plot plot;
+    for (const double scale : {1.0, second}) {
+      Series line;
+      line.label = "\"name\"";
+      for (int k = 0; k <= 400; ++k) {
+        line.along.push_back(scale * std::cos(0.1 * k)), line.values.push_back(scale * std::sin(0.23 * k));
+        if (scale == 1) plot.times.push_back(0.1 * k);
+      }
+      plot.lines.push_back(line);
+    }
+    Chart chart;
+    chart.against = "x";
+    return Charts({chart}, {plot}, palette(Theme::paper), 16.0 / 9, 40, {}, 0, 1).shown()[0].area.key.size();
+  };
+  EXPECT_EQ(key_of(0.95), 2u);
+}
+
+/// With an emphasis, a spring between what is grey recedes; one that holds what is to be looked at does not.
+TEST(Plot, LinksOfQuietBodiesRecede) {
+  Look look;
+  look.bodies.resize(3);
+  look.bodies[0].quiet = look.bodies[1].quiet = true;
+  for (const Theme theme : {Theme::paper, Theme::screen}) {
+    const Palette colours = palette(theme);
+    for (const auto& [a, b] : {std::pair(0, 1), std::pair(-1, 0), std::pair(1, -1)})
+      EXPECT_LT(contrast(link_color(look, colours, a, b), colours.room),
+                0.6 * contrast(colours.spring, colours.room));
+    for (const auto& [a, b] : {std::pair(0, 2), std::pair(-1, 2), std::pair(-1, -1)})
+      EXPECT_EQ(link_color(look, colours, a, b), colours.spring);
+    Marks::Vector vector;
+    vector.quantity = Quantity::velocity;
+    EXPECT_FALSE(color_of(vector, colours) == colours.quiet);
+    vector.quiet = true;
+    EXPECT_EQ(color_of(vector, colours), colours.quiet);
+  }
 }
 
 TEST(Plot, BodiesOfOneColourHaveShadesOfIt) {

@@ -486,6 +486,17 @@ TEST(Diagnostics, PlotsOfAFilmAreOfSomethingAndLeaveRoom) {
   refused(
       "[[film.plot]]\nquantity = [\"energy\"]\nsize = 50\n[[film.plot]]\nquantity = [\"energy\"]\n[[ball]]",
       "a.toml:4:1: the plots take 80 percent of the picture: 75 is the most");
+  refused(
+      "[[film.plot]]\nquantity = [\"energy\"]\nsize = 15\n[[ball]]\nradius = 0.1\nposition = [1, 1]",
+      "a.toml:3:8: there is no room for this plot: its axis would be 28 of the picture's 1080 pixels high; "
+      "give it a larger 'size'");
+  refused(
+      "[[film.plot]]\nquantity = [\"energy\"]\n[[film.plot]]\nquantity = [\"kinetic\"]\n"
+      "[[film.plot]]\nquantity = [\"energy\"]\nplace = \"right\"\n"
+      "[[film.plot]]\nquantity = [\"kinetic\"]\nplace = \"right\"\n"
+      "[[ball]]\nradius = 0.1\nposition = [1, 1]",
+      "a.toml:5:1: there is no room for this plot: its axis would be 20 of the picture's 1080 pixels high; "
+      "put fewer plots at the right, or give those below a smaller 'size'");
   refused("[film]\nshutter = 400", "a.toml:2:11: 'shutter' must be at most 360 deg, got 400");
 }
 

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <tuple>
 
+#include "draw/page/layout.h"
 #include "draw/page/line_style.h"
+#include "draw/page/names_around.h"
 #include "draw/page/plot_names.h"
 
 namespace obscura::draw {
@@ -19,7 +21,8 @@ constexpr double kAboveAxis = 4.5;  // points: how high above the axis the middl
 constexpr double kMargin = 36;  // page units at the weight 1, as of the caption
 // page units a point of a plot for print: digits 24 high, to be read from the back row
 constexpr double kType = 33 / 8.5;
-constexpr double kHead = 2.7;  // points
+constexpr double kHead = 2.7, kBeside = 2.2;   // points: its radius; from there to its name
+constexpr double kOffAxis = 2, kOverArea = 4;  // points: how far names keep off axes, and reach above them
 // of its width: how tall a plot against a quantity is at most at the right, where it would be a strip; of
 // what its axis spans: how far it goes on beyond, so that a line does not run along the other axis
 constexpr double kTallest = 1.1, kBeyondEnds = 0.05;
@@ -27,6 +30,40 @@ constexpr double kAround = 0.8;  // around a head, points
 constexpr double kMarkerAround =
     1.3;                         // the same of a marker with corners, whose edges are nearer to its middle
 constexpr double kFade = 0.008;  // of the run: how long before and after a name changes places it is faint
+
+// The rectangles of charts on a page.
+std::vector<Rect> places_of(const std::vector<Chart>& charts, double aspect, double foot) {
+  const double width = 1080 * aspect, weight = page_weight(aspect);
+  const double margin = kMargin * weight, inset = std::max(margin, 0.045 * width), gap = margin / 2;
+  const auto [right, below] = Charts::room(charts, aspect);
+  double column = 0;
+  for (const Chart& chart : charts) column += chart.place == Chart::Place::right;
+  double low = 1080 - below - foot, beside = inset;
+  const double each = column > 0 ? (low - inset - margin) / column : 0;
+  std::vector<Rect> all;
+  for (const Chart& chart : charts) {
+    Rect rect;
+    if (chart.place == Chart::Place::below) {
+      rect = {inset, low, width - 2 * inset, chart.share * 1080 - gap};
+      low += chart.share * 1080;
+    } else {
+      rect = {width - right + gap, beside, right - gap - inset, each - gap};
+      beside += each;
+      if (const double most = kTallest * rect.width; !chart.against.empty() && rect.height > most)
+        rect.y += (rect.height - most) / 2, rect.height = most;
+    }
+    all.push_back(rect);
+  }
+  return all;
+}
+
+// Lines against a quantity do not run along the other axis.
+void widen(PlotArea& area) {
+  if (area.log) return;
+  const double more = kBeyondEnds * (area.last - area.first);
+  if (area.first != 0) area.first -= more;
+  if (area.last != 0) area.last += more;
+}
 
 // where a line is now: a dot, or the marker along it
 void draw_head(const Series& line, const Point& at, double unit, Color ground, List& list) {
@@ -45,34 +82,16 @@ Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots,
                double aspect, double seconds, const std::vector<sim::SceneInfo>& casts, double foot,
                double type_scale)
     : colours_(colours), casts_(casts), foot_(foot) {
-  const double width = 1080 * aspect, weight = std::min(1.0, std::sqrt(width / 1440));
-  const double margin = kMargin * weight, inset = std::max(margin, 0.045 * width);
-  double column = 0;
-  for (const Chart& chart : charts) column += chart.place == Chart::Place::right;
   std::tie(right_, below_) = room(charts, aspect);
-  const double gap = margin / 2;
-  double low = 1080 - below(), beside = inset;
-  const double each = column > 0 ? (1080 - below() - inset - margin) / column : 0;
+  const std::vector<Rect> rects = places_of(charts, aspect, foot);
   for (std::size_t i = 0; i < charts.size(); ++i) {
-    Rect rect;
-    if (charts[i].place == Chart::Place::below) {
-      rect = {inset, low, width - 2 * inset, charts[i].share * 1080 - gap};
-      low += charts[i].share * 1080;
-    } else {
-      rect = {width - right_ + gap, beside, right_ - gap - inset, each - gap};
-      beside += each;
-      if (const double most = kTallest * rect.width; !charts[i].against.empty() && rect.height > most)
-        rect.y += (rect.height - most) / 2, rect.height = most;
-    }
-    panels_.push_back({charts[i], plots[i], plot_area(plots[i], rect, kType * weight * type_scale), {}});
+    const double point = kType * page_weight(aspect) * type_scale;
+    panels_.push_back({charts[i], plots[i], plot_area(plots[i], rects[i], point), {}, {}});
     PlotArea& area = panels_.back().area;
-    if (charts[i].against.empty()) {
+    if (charts[i].against.empty())
       area.last = seconds;
-    } else if (!area.log) {
-      const double more = kBeyondEnds * (area.last - area.first);
-      if (area.first != 0) area.first -= more;
-      if (area.last != 0) area.last += more;
-    }
+    else
+      widen(area);
   }
   // those above each other show one time at one place
   for (const Chart::Place place : {Chart::Place::below, Chart::Place::right}) {
@@ -81,7 +100,7 @@ Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots,
       if (panel.chart.place == place && panel.chart.against.empty()) areas.push_back(&panel.area);
     share_margins(areas);
   }
-  for (Panel& panel : panels_) place_names(panel);
+  for (std::size_t i = 0; i < panels_.size(); ++i) place_names(panels_[i], rects[i]);
 }
 
 std::pair<double, double> Charts::room(const std::vector<Chart>& charts, double aspect) {
@@ -93,19 +112,58 @@ std::pair<double, double> Charts::room(const std::vector<Chart>& charts, double 
   return {right, below};
 }
 
-void Charts::place_names(Panel& panel) const {
+std::vector<double> Charts::axis_heights(const std::vector<Chart>& charts, double aspect, double foot,
+                                         double type_scale) {
+  const double around = (kPlotAbove + kPlotBelow) * kType * page_weight(aspect) * type_scale;
+  std::vector<double> all;
+  for (const Rect& rect : places_of(charts, aspect, foot)) all.push_back(rect.height - around);
+  return all;
+}
+
+std::vector<std::vector<Point>> Charts::heads(const Panel& panel) {
   const PlotArea& area = panel.area;
-  std::vector<std::vector<double>> heads(panel.plot.times.size());
-  for (std::size_t k = 0; k < heads.size(); ++k) {
+  std::vector<std::vector<Point>> all(panel.plot.times.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
     for (const Series& line : panel.plot.lines) {
       // a run that diverges ends before the others
-      const std::vector<double>& all = line.values;
-      const double value = all.empty() ? area.low : all[std::min(k, all.size() - 1)];
-      heads[k].push_back(area.at(area.first, std::clamp(value, area.low, area.high)).y());
+      const auto value_of = [&](const std::vector<double>& values, double none) {
+        return values.empty() ? none : values[std::min(k, values.size() - 1)];
+      };
+      const double along = panel.chart.against.empty() ? area.first : value_of(line.along, area.first);
+      all[k].push_back(area.at(along, std::clamp(value_of(line.values, area.low), area.low, area.high)));
     }
   }
-  const auto [low, high] = room_for_names(area);
-  panel.names = names_beside(heads, area.heights, low, high);
+  return all;
+}
+
+void Charts::place_names(Panel& panel, const Rect& rect) const {
+  PlotArea& area = panel.area;
+  if (!named(panel.plot) || !area.key.empty()) return;
+  const std::vector<std::vector<Point>> ends = heads(panel);
+  const double unit = area.point;
+  if (panel.chart.against.empty()) {
+    std::vector<std::vector<double>> heights(ends.size());
+    for (std::size_t k = 0; k < ends.size(); ++k)
+      for (const Point& end : ends[k]) heights[k].push_back(end.y());
+    const auto [low, high] = room_for_names(area);
+    panel.names = names_beside(heights, area.heights, low, high);
+    return;
+  }
+  std::vector<Point> sizes;
+  for (std::size_t i = 0; i < panel.plot.lines.size(); ++i)
+    sizes.emplace_back(width_of_name(panel.plot, i, area), area.heights[i]);
+  const double left = area.left + kOffAxis * unit, top = area.top - kOverArea * unit;
+  const NamesAround found =
+      names_around(ends, sizes, {left, top, rect.x + rect.width - left, area.bottom - kOffAxis * unit - top},
+                   (kHead + kBeside) * unit, unit);
+  if (!found.clear && panel.plot.lines.size() > 1) {
+    // they are in the way wherever they stand
+    area = plot_area(panel.plot, rect, unit, true);
+    widen(area);
+    return;
+  }
+  panel.around = found.offsets;
+  panel.names.changes = found.changes;
 }
 
 double Charts::Panel::change(std::size_t line, std::size_t number) const {
@@ -114,8 +172,9 @@ double Charts::Panel::change(std::size_t line, std::size_t number) const {
 }
 
 double Charts::Panel::seen(std::size_t line, double time) const {
-  const double fade = kFade * (area.last - area.first);
+  const double fade = kFade * (plot.times.back() - plot.times.front());
   double most = 1;
+  if (names.changes.empty()) return most;
   for (std::size_t i = 0; i < names.changes[line].size(); ++i)
     most = std::min(most, std::abs(time - change(line, i)) / fade);
   return most;
@@ -133,6 +192,17 @@ double Charts::Panel::offset(std::size_t line, double time) const {
     if (names.changes[line][i] == next) return time < change(line, i) ? all[next - 1] : all[next];
   }
   return all[next - 1] + u * (all[next] - all[next - 1]);
+}
+
+Point Charts::Panel::beside(std::size_t line, double time) const {
+  const Point right((kHead + kBeside) * area.point, 0);
+  if (around.empty()) return right + Point(0, names.offsets.empty() ? 0 : offset(line, time));
+  // a side holds from half-way between two of the plot's times, where its name is unseen
+  const std::vector<double>& times = plot.times;
+  std::size_t k = std::size_t(std::upper_bound(times.begin(), times.end(), time) - times.begin());
+  k = std::min(k, times.size() - 1);
+  if (k > 0 && time < 0.5 * (times[k - 1] + times[k])) --k;
+  return around[line][k];
 }
 
 std::vector<Charts::Shown> Charts::shown() const {
@@ -154,6 +224,7 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
     past.range = panel.plot.range;
     past.lines.reserve(panel.plot.lines.size());
     std::vector<char> within;
+    std::vector<double> past_times;  // up to which each line has come
     for (std::size_t i = 0; i < panel.plot.lines.size(); ++i) {
       const sim::Snapshot& now = *nows[i / lines.size()].now;
       const sim::SceneInfo& cast = casts_[i / lines.size()];
@@ -166,9 +237,11 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
                   all.weight, all.quiet};
       const std::vector<double>& way = all.along.empty() ? times : all.along;
       line.along.assign(way.begin(), way.begin() + n);
+      past_times.push_back(n > 0 ? times[std::size_t(n) - 1] : now.time);
       within.push_back((!over_time || now.time <= panel.area.last) &&
                        nows[i / lines.size()].fate == Fate::well);
       if (within.back()) {
+        past_times.back() = now.time;
         const Measured::Line& its = lines[i % lines.size()];
         line.values.push_back(its.at(cast, now));
         const auto along = panel.chart.along(its);
@@ -191,11 +264,11 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
       // a subject of its own: the markers along the line become more
       list.of({Subject::What::chart, number + kMostLines / 2 + int(i)});
       if (within[i] && inside) draw_head(line, at, unit, colours_.ground, list);
-      const bool placed = over_time && inside;
-      const double high = at.y() + (placed ? panel.offset(i, line.along.back()) : 0);
-      draw_name(panel.plot, i, panel.area,
-                {at.x() + (kHead + 2.2) * unit, std::min(high, panel.area.bottom - kAboveAxis * unit)},
-                colours_, list, placed ? panel.seen(i, line.along.back()) : 1);
+      const double time = past_times[i];
+      const Point beside = inside ? panel.beside(i, time) : Point((kHead + kBeside) * unit, 0);
+      const double lowest = panel.area.bottom - kAboveAxis * unit;
+      draw_name(panel.plot, i, panel.area, {at.x() + beside.x(), std::min(at.y() + beside.y(), lowest)},
+                colours_, list, inside ? panel.seen(i, time) : 1);
     }
   }
   list.of({});

@@ -43,6 +43,10 @@ class Charts {
   /// What charts take of the right and of the foot of a page, page units.
   static std::pair<double, double> room(const std::vector<Chart>& charts, double aspect);
 
+  /// How high the axes of charts are, page units: of a key above them it is not known yet.
+  static std::vector<double> axis_heights(const std::vector<Chart>& charts, double aspect, double foot,
+                                          double type_scale);
+
   bool empty() const { return panels_.empty(); }
   /// How much of the page they take, page units.
   double right() const { return right_; }
@@ -70,14 +74,18 @@ class Charts {
     Chart chart;
     Plot plot;
     PlotArea area;
-    NamePlaces names;  // at each of the plot's times
+    NamePlaces names;                        // at each of the plot's times
+    std::vector<std::vector<Point>> around;  // against a quantity: from a line's head to its name
     double offset(std::size_t line, double time) const;
+    /// From the head of a line to the middle of its name's left end.
+    Point beside(std::size_t line, double time) const;
     /// s: when the name of a line changes places for the nth time.
     double change(std::size_t line, std::size_t number) const;
     /// How well its name is seen, 0 to 1.
     double seen(std::size_t line, double time) const;
   };
-  void place_names(Panel& panel) const;
+  void place_names(Panel& panel, const Rect& rect) const;
+  static std::vector<std::vector<Point>> heads(const Panel& panel);
   std::vector<Panel> panels_;
   Palette colours_;
   std::vector<sim::SceneInfo> casts_;

@@ -20,7 +20,6 @@ namespace {
 
 constexpr double kTick = 2.5, kAxis = 0.6;  // points
 constexpr double kDotRadius = 1.6;
-constexpr double kBelow = 13;                      // points: room for the numbers
 constexpr double kAcross = 34, kNumbersApart = 4;  // points: from tick to tick, between numbers at least
 constexpr double kHeadroom = 0.05;                 // of the range of the values: room above and below it
 constexpr double kFromZero = 0.4;   // of the largest value: what changes by less is shown without zero
@@ -207,7 +206,7 @@ void share_margins(std::span<PlotArea*> areas) {
   }
 }
 
-PlotArea plot_area(const Plot& plot, const Rect& rect, double point) {
+PlotArea plot_area(const Plot& plot, const Rect& rect, double point, bool keyed) {
   PlotArea area;
   area.point = point, area.log = plot.log;
   Range across, up;
@@ -240,9 +239,9 @@ PlotArea plot_area(const Plot& plot, const Rect& rect, double point) {
   // exponents and fractions of the title stay below the upper edge
   const Formula title = formula(plot.title, kPlotType * point, {});
   area.top = rect.y + std::max(kPlotAbove * point, kTitleBaseline * point + title.ascent + 0.5 * point);
-  area.bottom = rect.y + rect.height - kBelow * point;
+  area.bottom = rect.y + rect.height - kPlotBelow * point;
   area.title = area.top - kTitleBaseline * point;
-  fit_names(plot, rect, rect.x + title.width, area);
+  fit_names(plot, rect, rect.x + title.width, area, keyed);
   if (!area.log) {
     const int usual = std::max(
         2, int((rect.height - (area.top - area.title - kTitleBaseline * point)) / (kEachTick * point)));

@@ -62,8 +62,9 @@ struct PlotArea {
 };
 
 /// Axes for all of a plot's values in a rectangle of the page. Requires two times and a line at least. They
-/// begin at zero, unless what is plotted is far from it next to how much it changes.
-PlotArea plot_area(const Plot& plot, const Rect& rect, double point);
+/// begin at zero, unless what is plotted is far from it next to how much it changes. `keyed`: the names are
+/// in a key, however few they are.
+PlotArea plot_area(const Plot& plot, const Rect& rect, double point, bool keyed = false);
 
 /// Gives plots under each other the same left and right ends.
 void share_margins(std::span<PlotArea*> areas);
@@ -99,6 +100,7 @@ void draw_name(const Plot& plot, std::size_t line, const PlotArea& area, const P
                const Palette& colours, List& list, double seen = 1);
 inline constexpr double kNamesApart = 10;  // points
 inline constexpr double kPlotLine = 1;     // points: how wide a line is
+inline constexpr double kPlotBelow = 13;   // points: room for the numbers below it
 inline constexpr double kPlotAbove = 17;   // points: room for the title above the axis
 
 /// Puts plots down in rectangles of a sheet under each other (kPoint units a point), with type so much

@@ -41,35 +41,7 @@ double widest(const Plot& plot, double type) {
   return all;
 }
 
-}  // namespace
-
-bool named(const Plot& plot) {
-  return plot.lines.size() > 1 || plot.title.empty() || !plot.lines.front().note.empty();
-}
-
-std::pair<double, double> room_for_names(const PlotArea& area) {
-  const double half = kNamesApart / 2;
-  return {area.top - half * area.point, area.bottom + (half - kNameAboveAxis) * area.point};
-}
-
-void fit_names(const Plot& plot, const Rect& rect, double title_right, PlotArea& area) {
-  const double type = kPlotType * area.point;
-  area.names_type = 1;
-  area.heights.clear();
-  for (const Series& line : plot.lines) area.heights.push_back(height_of(line, type));
-  if (!named(plot)) return;
-  const auto [low, high] = room_for_names(area);
-  const double all = std::accumulate(area.heights.begin(), area.heights.end(), 0.0);
-  const double smaller = std::min(1.0, (high - low) / all);
-  const bool fits = smaller >= kSmallestName && smaller * widest(plot, type) <= kWidestName * rect.width;
-  if (!fits && plot.lines.size() > 1) {
-    lay_key(plot, rect, title_right, area);
-    return;
-  }
-  area.names_type = std::max(smaller, kSmallestName);
-  for (double& height : area.heights) height *= area.names_type;
-}
-
+// The names in rows of a key, whose type is as large as leaves the axis enough.
 void lay_key(const Plot& plot, const Rect& rect, double title_right, PlotArea& area) {
   const double unit = area.point, count = double(plot.lines.size()), tall = area.bottom - area.top;
   for (const double smaller : kKeyTypes) {
@@ -102,6 +74,36 @@ void lay_key(const Plot& plot, const Rect& rect, double title_right, PlotArea& a
   }
 }
 
+}  // namespace
+
+bool named(const Plot& plot) {
+  return plot.lines.size() > 1 || plot.title.empty() || !plot.lines.front().note.empty();
+}
+
+std::pair<double, double> room_for_names(const PlotArea& area) {
+  const double half = kNamesApart / 2;
+  return {area.top - half * area.point, area.bottom + (half - kNameAboveAxis) * area.point};
+}
+
+void fit_names(const Plot& plot, const Rect& rect, double title_right, PlotArea& area, bool keyed) {
+  const double type = kPlotType * area.point;
+  area.names_type = 1;
+  area.heights.clear();
+  for (const Series& line : plot.lines) area.heights.push_back(height_of(line, type));
+  if (!named(plot)) return;
+  const auto [low, high] = room_for_names(area);
+  const double all = std::accumulate(area.heights.begin(), area.heights.end(), 0.0);
+  const double smaller = std::min(1.0, (high - low) / all);
+  const bool fits =
+      !keyed && smaller >= kSmallestName && smaller * widest(plot, type) <= kWidestName * rect.width;
+  if (!fits && plot.lines.size() > 1) {
+    lay_key(plot, rect, title_right, area);
+    return;
+  }
+  area.names_type = std::max(smaller, kSmallestName);
+  for (double& height : area.heights) height *= area.names_type;
+}
+
 void draw_key(const Plot& plot, const PlotArea& area, const Palette& colours, List& list) {
   const double unit = area.point;
   for (std::size_t i = 0; i < area.key.size(); ++i) {
@@ -116,6 +118,10 @@ void draw_key(const Plot& plot, const PlotArea& area, const Palette& colours, Li
     add(name_of(line, type, legible(line.color, colours)),
         to + Point(kAfterSample * unit, kNameMiddle * type), list);
   }
+}
+
+double width_of_name(const Plot& plot, std::size_t line, const PlotArea& area) {
+  return name_of(plot.lines[line], area.names_type * kPlotType * area.point, {}).width;
 }
 
 double widest_name(const Plot& plot, const PlotArea& area) {

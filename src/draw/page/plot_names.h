@@ -13,16 +13,17 @@ bool named(const Plot& plot);
 
 /// Finds room for the names of lines in an area whose top and bottom are known: beside their ends, smaller
 /// where there are many; where that would be too small, in rows of a key under and beside the title, which
-/// ends at `title_right`, above the area, whose top goes down.
-void fit_names(const Plot& plot, const Rect& rect, double title_right, PlotArea& area);
-/// The same, but in a key at any rate.
-void lay_key(const Plot& plot, const Rect& rect, double title_right, PlotArea& area);
+/// ends at `title_right`, above the area, whose top goes down. `keyed`: in a key at any rate.
+void fit_names(const Plot& plot, const Rect& rect, double title_right, PlotArea& area, bool keyed);
 
 /// Puts the key down.
 void draw_key(const Plot& plot, const PlotArea& area, const Palette& colours, List& list);
 
 /// How wide the widest name is, as it stands beside its line; 0 in a key.
 double widest_name(const Plot& plot, const PlotArea& area);
+
+/// How wide that of one line is.
+double width_of_name(const Plot& plot, std::size_t line, const PlotArea& area);
 
 /// From where to where names beside their lines may reach.
 std::pair<double, double> room_for_names(const PlotArea& area);
