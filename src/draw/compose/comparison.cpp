@@ -206,7 +206,9 @@ Picture Comparison::depict(const std::vector<Instant>& runs, double time, double
 }
 
 void draw_run_names(const std::vector<ComparedRun>& runs, const std::vector<RunInstant>& nows,
-                    const Rect& window, double weight, const Palette& colours, List& list) {
+                    const Rect& window, double full, const Palette& colours, List& list) {
+  // of many runs smaller, so that they stay within the window
+  const double weight = std::min(full, window.height / (kRow * (double(runs.size()) + 0.5)));
   double down = 0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const std::string words = words_of(nows[i]);

@@ -65,15 +65,15 @@ void widen(PlotArea& area) {
   if (area.last != 0) area.last += more;
 }
 
-// where a line is now: a dot, or the marker along it
-void draw_head(const Series& line, const Point& at, double unit, Color ground, List& list) {
+// what keeps a head off lines
+void draw_halo(const Series& line, const Point& at, double unit, Color ground, List& list) {
   const int marker = marker_of(line.style);
-  if (marker == 0) {
-    list.add(Disc{at, (kHead + kAround) * unit, kAround * unit, line.color, ground});
-    return;
-  }
-  add_marker(marker, at, (kHead + kMarkerAround) * unit, ground, list);
-  add_marker(marker, at, kHead * unit, line.color, list);
+  add_marker(marker, at, (kHead + (marker == 0 ? kAround : kMarkerAround)) * unit, ground, list);
+}
+
+// where a line is now: a dot, or the marker along it
+void draw_head(const Series& line, const Point& at, double unit, List& list) {
+  add_marker(marker_of(line.style), at, kHead * unit, line.color, list);
 }
 
 }  // namespace
@@ -251,6 +251,16 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
     }
     const int number = kMostLines * int(&panel - panels_.data());
     obscura::draw::draw_lines(past, panel.area, list, number);
+    // of many lines the halos are below all heads, or they would cover what is close
+    const bool keyed = !panel.area.key.empty();
+    for (std::size_t i = 0; keyed && i < past.lines.size(); ++i) {
+      const Series& line = past.lines[i];
+      if (line.values.empty() || !within[i] || (panel.plot.range && !panel.area.spans(line.values.back())))
+        continue;
+      list.of({Subject::What::chart, number + 3 * kMostLines / 4 + int(i)});
+      draw_halo(line, panel.area.at(line.along.back(), line.values.back()), panel.area.point, colours_.ground,
+                list);
+    }
     for (const std::size_t i : painters_order(past)) {
       const Series& line = past.lines[i];
       if (line.values.empty()) continue;
@@ -263,7 +273,12 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
       const double unit = panel.area.point;
       // a subject of its own: the markers along the line become more
       list.of({Subject::What::chart, number + kMostLines / 2 + int(i)});
-      if (within[i] && inside) draw_head(line, at, unit, colours_.ground, list);
+      if (within[i] && inside && !keyed && marker_of(line.style) == 0) {
+        list.add(Disc{at, (kHead + kAround) * unit, kAround * unit, line.color, colours_.ground});
+      } else if (within[i] && inside) {
+        if (!keyed) draw_halo(line, at, unit, colours_.ground, list);
+        draw_head(line, at, unit, list);
+      }
       const double time = past_times[i];
       const Point beside = inside ? panel.beside(i, time) : Point((kHead + kBeside) * unit, 0);
       const double lowest = panel.area.bottom - kAboveAxis * unit;
