@@ -197,7 +197,7 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
 
 namespace {
 
-constexpr double kSample = 1.0 / 12;        // s of the film: how often labels look where they stand
+constexpr double kSample = 1.0 / 15;        // s of the film: how often labels look where they stand
 constexpr double kMostSampled = 128 << 20;  // bytes of instants kept for labels
 constexpr double kBetween = 1.0 / 60;       // s of the film: how often arrows are measured
 constexpr double kMostBetween = 32 << 20;   // bytes of instants kept for them

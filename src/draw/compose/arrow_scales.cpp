@@ -17,31 +17,25 @@ namespace {
 constexpr double kWellBelow = 0.6;    // of its length: what a ceiling or floor may leave of an arrow
 constexpr double kLeastWhole = 0.15;  // of its length: one that would have to be shorter is cut
 constexpr double kOpenSide = 0.5;     // of its length: what a side may leave of one where bodies go out
-constexpr double kFacing = 0.7;       // cosine: a wall at a side of the picture
 constexpr double kHeadRoom = 12;      // page units from the edge to a head
 
 constexpr double Scales::*kArrowKinds[] = {&Scales::velocity, &Scales::force, &Scales::impulse,
                                            &Scales::momentum, &Scales::acceleration};
 
-// The sides of a picture: left, upper, right, lower.
+// Whether bodies whose arrows are shown go out of a picture at its left, upper, right and lower side.
 struct Sides {
-  bool walled[4] = {};  // bodies do not leave it there
+  bool open[4] = {};
+
+  void see(const Rect& window, const Point& tail) {
+    for (int i = 0; i < 2; ++i) {
+      const double low = i == 0 ? window.x : window.y, high = low + (i == 0 ? window.width : window.height);
+      open[i] = open[i] || tail[i] < low, open[2 + i] = open[2 + i] || tail[i] > high;
+    }
+  }
 };
 
-Sides sides_of(const sim::SceneInfo& cast) {
-  Sides sides;
-  for (const sim::SceneInfo::Wall& wall : cast.walls) {
-    const sim::Vec3 n = wall.normal.normalized();
-    if (n.y() > kFacing) sides.walled[3] = true;
-    if (cast.dimension == 3) continue;
-    if (n.y() < -kFacing) sides.walled[1] = true;
-    if (std::abs(n.x()) > kFacing) sides.walled[n.x() > 0 ? 0 : 2] = true;
-  }
-  return sides;
-}
-
-// How much of the way from tail to tip lies within a window, where the tail does. Where a body may leave it,
-// what would be less than the least is no reason to shorten all others.
+// How much of the way from tail to tip lies within a window, where the tail does. Where bodies go out of it,
+// an arrow that would be much shorter is no reason to shorten all others.
 double part_within(const Rect& window, const Sides& sides, double margin, const Point& tail,
                    const Point& tip) {
   const Point low = Point(window.x, window.y).array() + margin;
@@ -53,7 +47,7 @@ double part_within(const Rect& window, const Sides& sides, double margin, const 
     const double edge = down ? low[i] : high[i];
     if (!(std::abs(tip[i] - tail[i]) > std::abs(edge - tail[i]))) continue;
     const double fits = (edge - tail[i]) / (tip[i] - tail[i]);
-    if (sides.walled[down ? i : 2 + i])
+    if (!sides.open[down ? i : 2 + i])
       part = std::min(part, std::max(fits, kLeastWhole));
     else if (fits > kOpenSide)
       part = std::min(part, fits);
@@ -65,7 +59,19 @@ double part_within(const Rect& window, const Sides& sides, double margin, const 
 
 Scales kept_whole(const Marks& marks, const sim::SceneInfo& cast, std::span<const SeenInstant> seen,
                   double weight, Scales scales) {
-  const Sides sides = sides_of(cast);
+  const auto each_reading = [&](const SeenInstant& instant, auto&& act) {
+    for (const Marks::Vector& vector : marks.vectors) {
+      if (!scale_of(vector.quantity, scales)) continue;
+      if (!vector.shown.has(instant.now->time, std::numeric_limits<double>::quiet_NaN())) continue;
+      for (const Reading& reading : readings(vector, cast, *instant.now))
+        if (instant.view.before(reading.tail)) act(vector, reading);
+    }
+  };
+  Sides sides;
+  for (const SeenInstant& instant : seen)
+    each_reading(instant, [&](const Marks::Vector&, const Reading& reading) {
+      sides.see(instant.view.window(), instant.view.page(reading.tail));
+    });
   Scales within{1, 1, 1, 1, 1}, below{1, 1, 1, 1, 1}, above{1, 1, 1, 1, 1};
   for (const SeenInstant& instant : seen) {
     const Projection& view = instant.view;
@@ -80,22 +86,18 @@ Scales kept_whole(const Marks& marks, const sim::SceneInfo& cast, std::span<cons
         slopes = slopes || (wall.normal.x() != 0 && wall.normal.y() > 0);
       }
     }
-    for (const Marks::Vector& vector : marks.vectors) {
-      const double* scale = scale_of(vector.quantity, scales);
-      if (!scale || !vector.shown.has(instant.now->time, std::numeric_limits<double>::quiet_NaN())) continue;
+    each_reading(instant, [&](const Marks::Vector& vector, const Reading& reading) {
+      const sim::Vec3 end = reading.tail + *scale_of(vector.quantity, scales) * reading.value;
+      if (!view.before(end)) return;
       double &least = *scale_of(vector.quantity, within), &under = *scale_of(vector.quantity, below),
              &over = *scale_of(vector.quantity, above);
-      for (const Reading& reading : readings(vector, cast, *instant.now)) {
-        const sim::Vec3 end = reading.tail + *scale * reading.value;
-        if (!view.before(reading.tail) || !view.before(end)) continue;
-        const Point tail = view.page(reading.tail), tip = view.page(end);
-        least = std::min(least, part_within(view.window(), sides, kHeadRoom * weight, tail, tip));
-        if (const double fits = (tail.y() - top) / (tail.y() - tip.y());
-            tail.y() > top && tip.y() < top && fits > kWellBelow)
-          under = std::min(under, fits);
-        if (tip.y() > floor && !slopes) over = std::min(over, (floor - tail.y()) / (tip.y() - tail.y()));
-      }
-    }
+      const Point tail = view.page(reading.tail), tip = view.page(end);
+      least = std::min(least, part_within(view.window(), sides, kHeadRoom * weight, tail, tip));
+      if (const double fits = (tail.y() - top) / (tail.y() - tip.y());
+          tail.y() > top && tip.y() < top && fits > kWellBelow)
+        under = std::min(under, fits);
+      if (tip.y() > floor && !slopes) over = std::min(over, (floor - tail.y()) / (tip.y() - tail.y()));
+    });
   }
   for (const auto kind : kArrowKinds) {
     const double by = std::min(within.*kind, below.*kind);

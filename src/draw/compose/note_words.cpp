@@ -29,7 +29,7 @@ constexpr double kRailChord = 8;    // the length of a curve's pieces, as words 
 constexpr double kOnRail = 4;       // of each unit of a curve under words
 constexpr double kOnTrail = 0.8;    // of each unit of a trail or path under words
 constexpr double kFromEdge = 3;     // points: from words to the page's edge at least
-constexpr double kLeaves = 4;       // times as fast as what they name words leave the page with it
+constexpr double kLeaves = 1.5;     // times as fast as what they name words leave the page with it
 constexpr double kNameCovered = 6;  // as against the cost of other words over something
 
 constexpr std::uint8_t kPlate = 150;  // how much of what lies under the words of a film is covered

@@ -73,7 +73,8 @@ void draw_halo(const Point& from, const Point& to, double width, Color room, con
 }  // namespace
 
 void offer(const Point& tail, Point tip, const Rect& window, double weight, std::vector<Arrow>& arrows) {
-  // one that begins in the window and would leave it has its head a little before the edge
+  // one that begins in the window and would leave it has its head a little before the edge: the farther it
+  // goes beyond it the more, so that the head does not jump
   const Point low(window.x, window.y), high = low + Point(window.width, window.height);
   const auto within = [&](const Point& p, double margin) {
     return (p.array() >= low.array() + margin).all() && (p.array() <= high.array() - margin).all();
@@ -82,9 +83,12 @@ void offer(const Point& tail, Point tip, const Rect& window, double weight, std:
   if (cut) {
     double part = 1;
     for (int i = 0; i < 2; ++i) {
-      const double edge = tip[i] < tail[i] ? low[i] + kEdge * weight : high[i] - kEdge * weight;
-      if (std::abs(tip[i] - tail[i]) > std::abs(edge - tail[i]))
-        part = std::min(part, (edge - tail[i]) / (tip[i] - tail[i]));
+      const bool down = tip[i] < tail[i];
+      const double beyond = down ? low[i] - tip[i] : tip[i] - high[i];
+      if (!(beyond > 0)) continue;
+      const double margin = std::min(beyond, kEdge * weight);
+      const double edge = down ? low[i] + margin : high[i] - margin;
+      part = std::min(part, (edge - tail[i]) / (tip[i] - tail[i]));
     }
     tip = tail + part * (tip - tail);
   }

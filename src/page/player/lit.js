@@ -82,10 +82,9 @@ export class Lit {
     this.rounds = new Instances(gl, [4, 1, 3, 3], rounds);
     this.sides = new Instances(gl, [3, 3, 3, 3], sides);
     this.lines = new Instances(gl, [3, 3, 2, 4, 4]);
-    /** @type {Instances[]} */
-    this.trails = space.panels.map(() => new Instances(gl, [3, 3, 2, 4, 4]));
-    /** @type {Instances[]} those over the bodies */
-    this.fronts = space.panels.map(() => new Instances(gl, [3, 3, 2, 4, 4]));
+    this.trails = new Instances(gl, [3, 3, 2, 4, 4]);
+    /** paths over the bodies */
+    this.fronts = new Instances(gl, [3, 3, 2, 4, 4]);
     this.pose_texture = texture(gl, gl.RGBA32F, 2, Math.max(this.bodies, 1), gl.RGBA, gl.FLOAT, gl.NEAREST);
     this.occlusion = new Occlusion(space);
     this.pieces = new Table(gl, this.occlusion.texels);
@@ -93,8 +92,6 @@ export class Lit {
     this.empty = gl.createVertexArray();
     /** @type {number[][]} what stands in space besides the bodies */
     this.seen = [];
-    /** @type {((program: import("./shaders.js").Program) => void)[]} */
-    this.setters = [];
   }
 
   /** Makes ready to draw panels into a picture so large. */
@@ -111,10 +108,9 @@ export class Lit {
   }
 
   /** Puts the panels on the canvas. */
-  end(context, lenses, scale) {
+  end(context) {
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.drawImage(this.card.canvas, 0, 0);
-    if ([...this.trails, ...this.fronts].some((/** @type {Instances} */ each) => each.count > 0)) this.draw_trails(context, lenses, scale);
   }
 
   /**
@@ -135,11 +131,11 @@ export class Lit {
     this.seen = besides.seen;
     this.linked.fill(besides.mesh);
     this.lines.fill(besides.lines);
-    this.trails[number].fill(besides.trails);
-    this.fronts[number].fill(besides.fronts);
+    this.trails.fill(besides.trails);
+    this.fronts.fill(besides.fronts);
     const [near, far] = this.depths(lens);
     const light = this.light();
-    const set = (this.setters[number] = (/** @type {import("./shaders.js").Program} */ program) => {
+    const set = (/** @type {import("./shaders.js").Program} */ program) => {
       program.use();
       program.vec("right", lens.right).vec("up", lens.up).vec("back", lens.back).vec("target", lens.target);
       program.vec("camera", [lens.per_distance, lens.scale, lens.middle[0], lens.middle[1]]);
@@ -152,7 +148,7 @@ export class Lit {
       program.vec("ground", g ? [...g.normal, dot(g.normal, g.point)] : [0, 0, 0, -1e9]);
       program.vec("light_u", [...light.u, light.origin[0]]).vec("light_v", [...light.v, light.origin[1]]);
       program.vec("light_w", [...light.away, light.origin[2]]).vec("light_size", [light.side, light.depth]);
-    });
+    };
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this.pose_texture);
     gl.activeTexture(gl.TEXTURE3);
@@ -203,6 +199,7 @@ export class Lit {
     this.solid.draw();
     this.linked.draw();
     set(programs.line);
+    this.trails.draw(4);
     this.lines.draw(4);
     set(programs.edge);
     this.edges.draw(4);
@@ -210,42 +207,11 @@ export class Lit {
     this.rounds.draw(130);
     set(programs.side);
     this.sides.draw(4);
-    gl.depthMask(true);
-  }
-
-  /**
-   * Trails over what hides them: the darker of two colours is taken, or on a dark page the lighter, as in the plane. They
-   * are drawn on white, or black, alone, under the depths of what is there already.
-   */
-  draw_trails(context, lenses, scale) {
-    const { gl } = this,
-      { canvas, programs } = this.card,
-      neither = this.dark ? 0 : 1;
-    gl.disable(gl.SCISSOR_TEST);
-    gl.clearColor(neither, neither, neither, 1);
-    gl.clear(gl.COLOR_BUFFER_BIT);
-    gl.enable(gl.SCISSOR_TEST);
+    gl.disable(gl.DEPTH_TEST);
+    set(programs.line);
+    this.fronts.draw(4);
     gl.enable(gl.DEPTH_TEST);
-    gl.depthMask(false);
-    gl.blendEquation(this.dark ? gl.MAX : gl.MIN);
-    lenses.forEach((/** @type {import("./lens.js").Lens} */ lens, /** @type {number} */ i) => {
-      const [x, y, width, height] = window_of(lens, scale);
-      gl.scissor(x, canvas.height - y - height, width, height);
-      this.setters[i](programs.trail);
-      programs.trail.vec(
-        "page_color",
-        this.run.film.ground.map((/** @type {number} */ c) => c / 255),
-      );
-      this.trails[i].draw(4);
-      gl.disable(gl.DEPTH_TEST);
-      this.fronts[i].draw(4);
-      gl.enable(gl.DEPTH_TEST);
-    });
-    gl.blendEquation(gl.FUNC_ADD);
     gl.depthMask(true);
-    context.globalCompositeOperation = this.dark ? "lighten" : "darken";
-    context.drawImage(canvas, 0, 0);
-    context.globalCompositeOperation = "source-over";
   }
 
   /** How dark the ground is: the light's rays that do not reach it, one after another. */

@@ -325,12 +325,6 @@ void main() {
   ink = vec4(color.rgb * a, a);
 }`;
 
-// the same on the page's colour, for the darker or the lighter of two
-const TRAIL_FRAGMENT = LINE_FRAGMENT.replace("out vec4 ink;", "uniform vec3 page_color;\nout vec4 ink;").replace(
-  "ink = vec4(color.rgb * a, a);",
-  "ink = vec4(mix(page_color, color.rgb, a), 1.0);",
-);
-
 const LINE_VERTEX = `${PLACE}${SEGMENT}
 layout(location = 0) in vec3 a;
 layout(location = 1) in vec3 b;
@@ -487,7 +481,6 @@ export function make_programs(gl) {
     shadow: new Program(gl, SHADOW_VERTEX, SHADOW_FRAGMENT),
     cover: new Program(gl, COVER_VERTEX, COVER_FRAGMENT),
     line: new Program(gl, LINE_VERTEX, LINE_FRAGMENT),
-    trail: new Program(gl, LINE_VERTEX, TRAIL_FRAGMENT),
     edge: new Program(gl, EDGE_VERTEX, LINE_FRAGMENT),
     round: new Program(gl, ROUND_VERTEX, LINE_FRAGMENT),
     side: new Program(gl, SIDE_VERTEX, LINE_FRAGMENT),

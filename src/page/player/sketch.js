@@ -355,7 +355,6 @@ export class Sketch {
   way(nodes) {
     const { c, lens } = this,
       each = Math.max(1, Math.ceil(nodes.length / SHADES));
-    c.globalCompositeOperation = this.dark ? "lighten" : "darken";
     for (let i = 0; i + 1 < nodes.length; i += each) {
       const part = nodes.slice(i, i + each + 1).filter((/** @type {any} */ node) => lens.depth(node.at) > 0.02);
       if (part.length < 2) continue;

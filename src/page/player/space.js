@@ -164,7 +164,7 @@ export class Space {
         lit.panel(lens, frame, scale, i);
       }
     });
-    lit?.end(context, lenses, scale);
+    lit?.end(context);
     for (const lens of lenses) this.ground.room(context, lens, scale, false);
   }
 
