@@ -587,7 +587,7 @@ std::vector<Key> rows() {
       {.path = "film.plot.place", .form = choice, .fallback = "\"below\"", .choices = {"below", "right"}, .doc = "Where the plot is.",
        .example = "\"right\""},
       {.path = "film.plot.size", .form = number, .unit = "%", .fallback = "30", .range = {10, 75},
-       .doc = "Its share of the picture's height; at the right, of its width.", .example = "40"},
+       .doc = "Its share of the picture's height; at the right, of its width. An axis that would be lower than a twentieth of the picture is an error.", .example = "40"},
 
       {.path = "film.figure", .form = boolean, .fallback = "false", .doc = "Whether what `[figure]` names and measures is shown in the film too.", .example = "true"},
       {.path = "film.axes", .form = boolean, .fallback = "false", .doc = "Axes of the room: arrows from the origin.", .example = "true"},
