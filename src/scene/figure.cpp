@@ -8,6 +8,7 @@
 #include "draw/page/measure.h"
 #include "draw/picture/color.h"
 #include "draw/picture/formula.h"
+#include "draw/picture/formula_values.h"
 #include "scene/fields.h"
 #include "scene/links.h"
 #include "scene/picture.h"

@@ -1,4 +1,5 @@
 #include "draw/picture/formula.h"
+#include "draw/picture/formula_values.h"
 
 #include <algorithm>
 #include <cmath>

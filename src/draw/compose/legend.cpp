@@ -9,6 +9,7 @@
 #include "draw/page/readings.h"
 #include "draw/page/sheet.h"
 #include "draw/picture/formula.h"
+#include "draw/picture/formula_values.h"
 #include "draw/plane/stage.h"
 
 namespace obscura::draw {

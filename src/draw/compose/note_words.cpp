@@ -9,6 +9,7 @@
 #include "draw/compose/notes.h"
 #include "draw/page/measure.h"
 #include "draw/picture/convex.h"
+#include "draw/picture/formula_values.h"
 #include "draw/picture/rope_way.h"
 
 namespace obscura::draw {

@@ -8,6 +8,7 @@
 #include "draw/page/plot.h"
 #include "draw/page/sheet.h"
 #include "draw/picture/formula.h"
+#include "draw/picture/formula_values.h"
 
 namespace obscura::draw {
 namespace {

@@ -14,6 +14,7 @@
 #include "draw/page/plot_names.h"
 #include "draw/page/sheet.h"
 #include "draw/picture/formula.h"
+#include "draw/picture/formula_values.h"
 
 namespace obscura::draw {
 namespace {

@@ -47,8 +47,8 @@ struct FormulaMistake {
 std::optional<FormulaMistake> mistake(std::string_view text);
 
 /// Sets `text` at an em of `size` page units. A name that is not known stays as it was written. What stands
-/// between kNumber and kNumberEnd is a number in digits of equal width.
-Formula formula(std::string_view text, double size, Color color);
+/// between kNumber and kNumberEnd is a number in digits of equal width, with so many ems of `room` before it.
+Formula formula(std::string_view text, double size, Color color, double room = 0);
 inline constexpr char kNumber = '\x01', kNumberEnd = '\x02';
 
 /// Which point of words stays where it is when another font sets them: that beside what they name.
@@ -70,34 +70,6 @@ std::string with_number(const std::string& text, int number);
 
 /// `text` as it is where it is mathematics; plain words, such as a body is called by, upright.
 std::string as_words(const std::string& text);
-
-/// Where a value goes in a label: "{}", of three digits and with its unit, or "{:.2}", of as many digits
-/// after the point.
-struct ValueSlot {
-  std::size_t begin = 0, end = 0;  // of the text
-  std::optional<int> decimals;
-};
-/// None: the label shows no value.
-std::optional<ValueSlot> value_slot(std::string_view text);
-
-/// A number as mathematics: up to six digits, from a million up and below 1e-4 with a power of ten:
-/// "7.4 \times 10^{14}". `exponent`: that of the power.
-std::string as_number(double value, std::optional<int> exponent = {});
-
-/// The numbers of one axis: if one of them has a power of ten all have that of the largest.
-std::vector<std::string> as_numbers(const std::vector<double>& values);
-
-/// `text` with its slot replaced by a value. "{}" has three digits that count, those of a thousand up to a
-/// million all before the point; beyond, and below 1e-4, it has a power of ten. What follows "{:.2}" and is
-/// the unit is set upright.
-std::string with_value(const std::string& text, double value, std::string_view unit);
-
-/// The same for a value that goes from `low` to `high` while the label stays where it is: "{}" has as many
-/// digits after the point as give the largest three digits, and its power of ten. Room is left for the
-/// longest number: all labels are equally wide, and nothing in them moves but the number's first digits and
-/// its sign.
-Formula live(const std::string& text, double value, double low, double high, std::string_view unit,
-             double size, Color color);
 
 /// All of it as much lighter as `strength` (0 to 1) says.
 void fade(Formula& formula, double strength);

@@ -8,6 +8,7 @@
 
 #include "draw/picture/formula.h"
 #include "draw/picture/formula_text.h"
+#include "draw/picture/formula_values.h"
 
 namespace obscura::draw {
 namespace {
