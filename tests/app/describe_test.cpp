@@ -127,6 +127,20 @@ TEST_F(Describe, TellsOfWhatTurns) {
   ASSERT_EQ(over.exit, 0) << over.err;
   EXPECT_THAT(over.out, testing::ContainsRegex("The slab turns over [0-9]+ times, first at "));
   EXPECT_THAT(over.out, Not(HasSubstr("does not move")));
+
+  // neither what swings to and fro does, nor what rolls about its length while it tumbles
+  const std::string swings =
+      "[[box]]\nname = \"bob\"\nsize = [0.2, 0.4, 0.2]\nposition = [0.5, 1.5, 0]\nspin = [0, 0, -30]\n"
+      "[[joint]]\ntype = \"hinge\"\nbetween = [\"bob\", [0, 1.5, 0]]\naxis = [0, 0, 1]\n";
+  const std::string rolls =
+      "gravity = [0, 0, 0]\n[[box]]\nname = \"bob\"\nsize = [1, 0.2, 0.2]\nposition = [0, 1.5, 0]\n"
+      "spin = [200, 400, 0]\n";
+  for (const std::string& bodies : {swings, rolls}) {
+    scene("duration = 6\n[room]\nsize = [3, 3, 3]\nwalls = \"none\"\n" + bodies);
+    const Outcome not_over = obscura("describe scene.toml");
+    ASSERT_EQ(not_over.exit, 0) << not_over.err;
+    EXPECT_THAT(not_over.out, Not(HasSubstr("turns over"))) << bodies;
+  }
 }
 
 // What moves bodies: a hand, an explosion. Boxes that cannot turn are boxes in every pose.

@@ -348,7 +348,7 @@ std::string FigureBuilder::text() const {
   for (const draw::Figure::Plot& plot : figure.plots) {
     add(shown_plot(plot, front.cast, plot.over.substr(0, plot.over.find('=')), !plot.reference.empty()));
   }
-  if (variants_.size() > 1) {
+  if (variants_.size() > 1 && !figure.plots.empty()) {
     std::vector<std::string> names;
     for (const auto& variant : variants_) names.push_back(draw::formula_in_letters(variant.name));
     add(fmt::format("Its lines are of {} runs: {}.", variants_.size(), telling::together(names)));

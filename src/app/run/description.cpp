@@ -35,7 +35,8 @@ constexpr std::size_t kToldSingly = 6;        // bodies, impacts: told one by on
 constexpr std::size_t kMostHappenings = 300;  // impacts that are listed
 constexpr double kSoft = 0.02;                // of sqrt(g L): slower is no impact
 constexpr double kSame = 1e-3;                // of the energy: it has not changed
-constexpr double kTurnedOver = 0.5;           // cosine to the axis of the start: it points the other way
+constexpr double kTurnedOver = 0.5;           // cosine to the axis of the start: it points the other way,
+constexpr double kTurnsAbout = 0.9;           // or is that axis
 
 struct Impact {
   double time = 0, speed = 0;  // s, m/s: along the normal, before
@@ -112,12 +113,16 @@ class Account {
   };
   std::vector<Grip> grips_;  // of the mouse's springs, in the order of time
   std::vector<int> held_;    // mice: which of them it is in; -1: none
-  // A body's axis about which it turned at the start, and which way that points now. Free bodies that turn
-  // about their middle axis turn over.
+  // How a free body turns: what turns about its middle axis turns over now and then, and its spin stays.
   struct Turning {
-    sim::Vec3 axis = sim::Vec3::Zero();  // in the body's frame, unit; zero: it does not turn
-    bool over = false, free = true;      // free: it has touched nothing
+    sim::Vec3 axis = sim::Vec3::Zero();  // of its spin at the start, in the body's frame; zero: none
+    sim::Vec3 way = sim::Vec3::Zero();   // the same in the room
+    bool over = false, free = true;      // free: it touches nothing, and nothing holds it
     std::vector<double> times{};         // s, when it has turned over
+    std::size_t along = 0, seen = 0;     // instants at which it turns about that axis; all
+
+    // what wobbles is not said to turn over
+    bool told() const { return free && !times.empty() && 2 * along > seen; }
   };
   std::vector<Turning> turning_;
 };
@@ -191,17 +196,21 @@ void Account::read(const sim::Snapshot& now) {
 void Account::follow_turns(const sim::Snapshot& now) {
   if (cast_.dimension == 2) return;
   turning_.resize(bodies_.size());
-  for (const sim::Snapshot::Contact& each : now.contacts)
-    for (const int body : {each.body, each.other})
-      if (body >= 0) turning_[std::size_t(body)].free = false;
+  const auto hold = [&](int body) {
+    if (body >= 0) turning_[std::size_t(body)].free = false;
+  };
+  for (const sim::Snapshot::Contact& each : now.contacts) hold(each.body), hold(each.other);
+  for (const sim::SceneInfo::Joint& each : cast_.joints) hold(each.a), hold(each.b);
+  for (const sim::SceneInfo::Spring& each : cast_.springs) hold(each.a), hold(each.b);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const sim::Snapshot::Body& it = now.bodies[i];
     Turning& its = turning_[i];
     if (!turns(it.spin)) continue;
-    const sim::Vec3 way = it.orientation.conjugate() * it.spin.normalized();
-    if (!last_) its.axis = way;
-    const double along = its.axis.dot(way);
-    if (along > -kTurnedOver && along < kTurnedOver) continue;
+    const sim::Vec3 way = it.spin.normalized(), axis = it.orientation.conjugate() * way;
+    if (!last_) its.axis = axis, its.way = way;
+    const double along = its.axis.dot(axis);
+    ++its.seen, its.along += std::abs(along) > kTurnsAbout;
+    if (!(std::abs(along) > kTurnedOver && its.way.dot(way) > kTurnedOver)) continue;
     if (its.over != (along < 0)) its.times.push_back(now.time);
     its.over = along < 0;
   }
@@ -299,7 +308,7 @@ std::vector<std::string> Account::events() const {
   std::vector<std::pair<double, std::string>> told = causes();
   for (std::size_t i = 0; i < turning_.size(); ++i) {
     const Turning& its = turning_[i];
-    if (!its.free || its.times.empty() || told.size() >= 2 * kToldSingly) continue;
+    if (!its.told() || told.size() >= 2 * kToldSingly) continue;
     told.emplace_back(
         its.times.front(),
         its.times.size() == 1

@@ -125,6 +125,7 @@ void annotate(const Marks& marks, const Scales& scales, const sim::SceneInfo& ca
 /// Rulers in metres along the lower and the left edge of a sheet's window, and how much room they take there.
 void draw_rulers(const Layout& layout, const View& view, const Palette& colours, List& list);
 inline constexpr double kRulerBelow = 25, kRulerLeft = 27;  // pt, at the left at least
+/// The same at the left, pt: more in fonts in which the upright ruler's name is wide.
 double ruler_left();
 
 /// Whether a figure has a line of legend, and puts it down from `left` to `right` (page units) on a baseline:
