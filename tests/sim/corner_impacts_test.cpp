@@ -11,8 +11,10 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <random>
 
 #include "sim/first_impact.h"
+#include "sim/solve/iterate/plane_pair_impact.h"
 #include "sim/touching.h"
 
 namespace obscura::sim {
@@ -300,6 +302,43 @@ TEST(CornerImpacts, TwoBodiesPartAsTheExactSolverSays) {
     }
   }
   EXPECT_GT(met, 80);
+}
+
+// A box that lands all but level on both corners, which hold: the normals are exact, and what their heights
+// leave of the slip is no more than these differ. Taking turns would not end: one corner's friction is almost
+// the other's.
+TEST(CornerImpacts, OfABoxThatLandsLevelStopItsFace) {
+  std::mt19937 bits(5);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (int n = 0; n < 1000; ++n) {
+    const double m = 2, half = 0.3, high = 0.25, inertia = m * (4 * half * half + 4 * high * high) / 12;
+    plane::PairImpact it;
+    it.closed[0] = it.closed[1] = true, it.mu = 0.8;
+    // rows (x, y, moment) of each corner's normal and tangent, of one a little lower
+    const double lower = 1e-4 * any(bits);
+    const double rows[4][3] = {{0, 1, -half}, {1, 0, high}, {0, 1, half}, {1, 0, high + lower}};
+    const double speed[3] = {0.3 * any(bits), -1 + 0.3 * any(bits), 0.5 * any(bits)};
+    for (int i = 0; i < 4; ++i) {
+      for (int k = 0; k < 3; ++k) it.v[i] += rows[i][k] * speed[k];
+      for (int k = 0; k < 4; ++k)
+        it.K[i][k] =
+            (rows[i][0] * rows[k][0] + rows[i][1] * rows[k][1]) / m + rows[i][2] * rows[k][2] / inertia;
+    }
+    double p[4], w[4];
+    plane::solve(it, p);
+    for (int i = 0; i < 4; ++i) {
+      w[i] = it.v[i];
+      for (int k = 0; k < 4; ++k) w[i] += it.K[i][k] * p[k];
+    }
+    for (const int touch : {0, 1}) {
+      EXPECT_GE(p[2 * touch], 0) << n;
+      EXPECT_LE(std::abs(p[2 * touch + 1]), it.mu * p[2 * touch] * (1 + 1e-12)) << n;
+    }
+    EXPECT_NEAR(p[0] > 0 ? w[0] : std::min(w[0], 0.0), 0, 1e-12) << n;
+    EXPECT_NEAR(p[2] > 0 ? w[2] : std::min(w[2], 0.0), 0, 1e-12) << n;
+    EXPECT_NEAR(w[1], 0, 1e-12) << n;
+    EXPECT_NEAR(w[3], 0, 1e-3) << n;
+  }
 }
 
 }  // namespace

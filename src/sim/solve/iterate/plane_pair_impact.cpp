@@ -23,6 +23,7 @@ constexpr double kExact = 1e-13;     // of the impulses, or of the speeds: what 
 constexpr double kSingular = 1e-12;  // of k_nn k_tt: no smaller determinant is told from rounding
 constexpr double kGain = 1e-13;      // of the energy that moves along the rows: rounding
 constexpr double kParallel = 1e-8;   // of k_00 k_11: two normals are one
+constexpr double kLevel = 1e-3;      // of the speeds: how far from level two touches of a flat face slip
 
 // the impulses of touch k alone, speeds b without them
 void touch(const PairImpact& it, int k, double bn, double bt, double& pn, double& pt) {
@@ -66,6 +67,7 @@ bool together(const PairImpact& it, const double (&b)[4], double (&p)[4]) {
   int rows[3], count = 0;
   const int slide[2] = {slides(it, 0, p), slides(it, 1, p)};
   const bool open[2] = {p[0] <= 0, p[2] <= 0};
+  const bool shared = !open[0] && !open[1] && slide[0] == 0 && slide[1] == 0;
   if (open[0] && open[1]) return false;
   double q[4] = {0, 0, 0, 0};
   for (int k = 0; k < 2; ++k) {
@@ -73,7 +75,7 @@ bool together(const PairImpact& it, const double (&b)[4], double (&p)[4]) {
     if (open[k]) continue;
     rows[count] = n, ways[count][n] = 1, ways[count][t] = slide[k] * it.mu, ++count;
     if (slide[k] != 0) continue;
-    if (k == 1 && !open[0] && slide[0] == 0)
+    if (k == 1 && shared)
       q[t] = p[t];
     else
       rows[count] = t, ways[count][t] = 1, ++count;
@@ -106,10 +108,12 @@ bool together(const PairImpact& it, const double (&b)[4], double (&p)[4]) {
   for (int k = 0; k < 2; ++k) {
     const int n = 2 * k, t = n + 1;
     const double wn = b[n] + answer(n, q), wt = b[t] + answer(t, q);
+    // the second of two that stick slips by how far they are from level alone
+    const double slip = k == 1 && shared ? kLevel : kExact;
     const bool lawful = open[k] ? wn >= -kExact * size
                         : slide[k] != 0
                             ? q[n] >= 0 && slide[k] * wt <= kExact * size
-                            : q[n] >= 0 && std::fabs(q[t]) <= it.mu * q[n] && std::fabs(wt) <= kExact * size;
+                            : q[n] >= 0 && std::fabs(q[t]) <= it.mu * q[n] && std::fabs(wt) <= slip * size;
     if (!lawful) return false;
   }
   std::copy(q, q + 4, p);
