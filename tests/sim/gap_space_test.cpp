@@ -124,6 +124,26 @@ TEST(SpaceGaps, AreNoneBeyondTheMarginAndAsNearAsTheSeparationWithin) {
   for (const int seen : kinds) EXPECT_GT(seen, 100);
 }
 
+// A push at a place that neither body reaches is none of theirs, nor is the speed that it has there.
+TEST(SpaceGaps, OfBodiesApartLieOnThem) {
+  SpaceDice dice(21);
+  int edges = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const Shape<3> a = brick({0.6, 0.8, 1}), b = brick({0.7, 0.5, 0.9});
+    const BodyMotion<3> at_a = dice.place(1), at_b = dice.place(1);
+    if (separation(a, at_a, b, at_b) <= 0) continue;
+    for (const ContactCandidate<3>& gap : found(a, at_a, b, at_b, 0.3)) {
+      if (gap.kind != Kind::edges) continue;
+      ++edges;
+      const EvaluatedContact<3> now = evaluate(gap, at_a, at_b);
+      const Vec<3> half = 0.5 * now.value * now.normal;
+      EXPECT_LT((now.point + half - at_a.x).norm(), bounding_radius(a) * (1 + 1e-9)) << n;
+      EXPECT_LT((now.point - half - at_b.x).norm(), bounding_radius(b) * (1 + 1e-9)) << n;
+    }
+  }
+  EXPECT_GT(edges, 500);
+}
+
 // so that the solver need not look again at pairs that cannot have come near
 TEST(SpaceGaps, AreNoneWhileTheBodiesMoveLessThanTheirClearance) {
   SpaceDice dice(12);

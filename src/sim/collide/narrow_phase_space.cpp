@@ -349,10 +349,11 @@ class Shared {
       if (n.dot(n_) < kSteep) return;
       const double core = n.dot(to - from);
       const bool real = touching_.best <= 0 || cross_within(base, other, of_base, of_other);
+      if (!real) return places_.push_back(at);
       add(at,
           touching_.base_is_b ? couple_.edges(of_other, of_base, n, core)
                               : couple_.edges(of_base, of_other, -n, core),
-          real);
+          true);
       return;
     }
     // too nearly parallel to tell a normal: the place on the other's edge against the touching face
