@@ -28,6 +28,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
       joints_(model),
       drives_(model),
       sleep_(model, Sleep<D>::Forces::iterated, deepest),
+      warm_start_(model),
       g_(std::sqrt(model.gravity.squaredNorm())),
       allowed_overlap_(sim::allowed_overlap(model)),
       every_(std::max<std::int64_t>(1, std::llround(value(model.rate) / kPairSearches))),

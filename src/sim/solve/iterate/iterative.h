@@ -14,6 +14,7 @@
 #include "sim/solve/iterate/moving_body.h"
 #include "sim/solve/iterate/substeps.h"
 #include "sim/solve/iterate/touch_notes.h"
+#include "sim/solve/iterate/warm_start.h"
 #include "sim/solve/sleep.h"
 
 namespace obscura::sim {
@@ -128,6 +129,11 @@ class Iterative : public ContactSolver<D> {
   double farther(int i, double t, double h);
   void foresee_speeds(StepPart<D> step);
   void begin_corrections();
+  /// Whether contacts of a body may give energy, or give it not to that body alone.
+  bool shares_forces(int body) const {
+    return body < int(model_.bodies.size()) &&
+           (joints_.has(body) || (!carries_.empty() && carries_[std::size_t(body)]));
+  }
   /// To the joint solver: its bodies where the substep begins; velocities, of bodies on joints among these;
   /// and these back.
   void poses_to_joints();
@@ -142,6 +148,7 @@ class Iterative : public ContactSolver<D> {
   JointSolver<D> joints_;
   Drives<D> drives_;
   Sleep<D> sleep_;
+  WarmStart<D> warm_start_;
   Stages stages_;
   std::vector<char> carries_;    // one a body: kinematic or with a belt; empty: there are none
   std::vector<double> quicker_;  // one a body, m/s: how much faster the step moves it; empty: none are moved

@@ -208,8 +208,33 @@ Orientation<2> PlaneIterative::begun_turn(int body) const { return Orientation<D
 void PlaneIterative::warm_start(StepPart<D> part) {
   constants_ = {part.h, 0.05 * restitution_threshold_,
                 part.h * std::sqrt(model_.gravity.squaredNorm()) + driven_gain_, allowed_overlap(part.state)};
+  warm_start_.begin(moving_);
   deep_ = plane::warm_start(batches_.data(), int(batches_.size()), poses_.data(), old_.data(), moving_.data(),
                             constants_, slow_, fast_);
+  moderate_warm_start();
+  moderate_warm_start();
+}
+
+void PlaneIterative::moderate_warm_start() {
+  if (!warm_start_.gave(moving_, bounding_radius_)) return;
+  const int room = int(turns_.size());
+  const auto each_pair = [&](auto&& act) {
+    for (const Pair& pair : pairs_.all()) {
+      if (pair.slot >= 0) act(pair.a, pair.b >= 0 ? pair.b : room);
+    }
+  };
+  if (!warm_start_.moderate(
+          moving_, each_pair, [&](int body) { return shares_forces(body); },
+          [](int) { return Rotation<D>(Rotation<D>::Identity()); }))
+    return;
+  for (const Pair& pair : pairs_.all()) {
+    if (pair.slot < 0) continue;
+    const double share = warm_start_.share(moving_[pair.a].im > 0 ? pair.a : pair.b);
+    if (share == 1) continue;
+    ContactBatch& g = batches_[pair.slot / kLanes];
+    const int lane = pair.slot % kLanes;
+    for (int k = 0; k < 2; ++k) g.p[k][lane] *= share, g.q[k][lane] *= share;
+  }
 }
 
 void PlaneIterative::resolve_impacts(StepPart<D> part) {

@@ -75,6 +75,7 @@ class PlaneIterative final : public Iterative<2> {
   bool strained(const State<D>& state) const;
   void report_pair(const plane::Pair& pair, State<D>& state) const;
   void build_batches(const State<D>& state, bool known);
+  void moderate_warm_start();
   void place_contacts(State<D>& state, bool all) const;
   bool update_batches(const State<D>& state);
   int colour(const plane::Pair& pair);

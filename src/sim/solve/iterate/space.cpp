@@ -351,6 +351,7 @@ void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
   static const BodyMotion<D> room;
   const int n = int(model_.bodies.size());
   closing_.assign(n + 1, 0), all_.clear();
+  warm_start_.begin(moving_);
   auto known = state.contacts.begin();
   for (int i = 0; i < int(touches_.size()); ++i) {
     ContactConstraint& touch = touches_[i];
@@ -381,6 +382,24 @@ void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
                  most = touch.mu * touch.normal_impulse;
     if (size > most) touch.tangent_impulse *= most / size;
     push(touch, touch.normal_impulse * touch.n + touch.tangent_impulse);
+  }
+  moderate_warm_start();
+}
+
+void SpaceIterative::moderate_warm_start() {
+  if (!warm_start_.gave(moving_, bounding_radius_)) return;
+  const auto each_pair = [&](auto&& act) {
+    for (const ContactConstraint& touch : touches_) act(touch.a, touch.b);
+  };
+  if (!warm_start_.moderate(
+          moving_, each_pair, [&](int body) { return shares_forces(body); },
+          [&](int body) { return stances_[std::size_t(body)].room_from_body; }))
+    return;
+  for (ContactConstraint& touch : touches_) {
+    const int body = moving_[touch.a].inverse_mass > 0 ? touch.a : touch.b;
+    if (moving_[body].inverse_mass == 0) continue;
+    const double share = warm_start_.share(body);
+    touch.normal_impulse *= share, touch.tangent_impulse *= share;
   }
 }
 

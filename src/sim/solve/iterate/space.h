@@ -143,6 +143,7 @@ class SpaceIterative final : public Iterative<3> {
   bool gains(const State<D>& state);
   void place(State<D>& state, double h);
   void warm_start_contacts(const State<D>& state, double h);
+  void moderate_warm_start();
   void solve_together();
   void shed_gains();
   void keep_impulses(const State<D>& state);
