@@ -384,7 +384,7 @@ TEST(Arrows, OfFilmsEndBelowTheTitle) {
     Marks marks;
     marks.vectors.push_back({.quantity = Quantity::velocity, .body = 0, .label = ""});
     RunAhead ahead;
-    ahead.samples.push_back({made.now, 0});
+    ahead.moments.push_back(made.now), ahead.films.push_back(0);
     const Illustrator artist = made.depictor();
     const Annotations all(marks, artist, std::move(ahead), {}, 60, 1080);
     return std::pair(all.scales().velocity, (4.5 - height) / 2);
@@ -407,7 +407,7 @@ TEST(Arrows, OfFilmsAreSeenWhole) {
     Marks marks;
     marks.vectors.push_back({.quantity = Quantity::velocity, .body = 0, .label = ""});
     RunAhead ahead;
-    ahead.samples.push_back({made.now, 0});
+    ahead.moments.push_back(made.now), ahead.films.push_back(0);
     for (const double y : {0.2, goes_out ? -1 : 0.2}) {
       ahead.between.push_back(made.now);
       ahead.between.back().bodies[0].position.y() = y;

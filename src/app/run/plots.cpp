@@ -272,6 +272,9 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
   found.ghosts.resize(marks.ghosts.size());
   double next = 0, stride = kSample, kept = 0;
   double next_between = marks.vectors.empty() ? 1e300 : 0, between = 0;
+  const auto keep = [&](sim::Snapshot now, double film) {
+    found.moments.push_back(std::move(now)), found.films.push_back(film);
+  };
   bool diverges = false;
   const bool all = !wanted.empty() || fits_run(scene);  // instants are looked at, not only those of labels
   for (const auto& [t, ghost] : instants) {
@@ -294,9 +297,9 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
       for (const draw::Pace::Frozen& each : scene.film.speed.frozen()) {
         if (!(each.world == t)) continue;
         for (const double part : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9})
-          found.samples.push_back({now, sim::value(each.film) + part * sim::value(each.seconds)});
+          keep(now, sim::value(each.film) + part * sim::value(each.seconds));
       }
-      next = found.samples.back().film;
+      next = found.films.back();
       continue;
     }
     watched.any = true;
@@ -311,15 +314,16 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
       continue;
     }
     kept += bytes(now);
-    found.samples.push_back({std::move(now), film});
+    keep(std::move(now), film);
     // of a large scene fewer
     if (kept > kMostSampled) {
-      for (std::size_t k = 1; 2 * k < found.samples.size(); ++k)
-        found.samples[k] = std::move(found.samples[2 * k]);
-      found.samples.resize((found.samples.size() + 1) / 2);
+      const std::size_t half = (found.moments.size() + 1) / 2;
+      for (std::size_t k = 1; k < half; ++k)
+        found.moments[k] = std::move(found.moments[2 * k]), found.films[k] = found.films[2 * k];
+      found.moments.resize(half), found.films.resize(half);
       stride *= 2, kept /= 2;
     }
-    next = found.samples.back().film + stride;
+    next = found.films.back() + stride;
   }
   if (!traced.empty()) found.track = std::make_shared<const sim::Track>(run->take_track());
   return watched;
@@ -360,23 +364,23 @@ std::shared_ptr<const draw::Annotations> annotations(const scene::Scene& scene, 
 }
 
 // the marks of several runs, with one scale for each kind of arrow: that of the longest
-void annotate(const Ahead& page, const std::vector<Watched>& watched, std::vector<Ahead::Run>& runs) {
+void annotate(const Ahead& page, std::vector<Watched>& watched, std::vector<Ahead::Run>& runs) {
   constexpr double draw::Scales::*kAll[] = {&draw::Scales::velocity, &draw::Scales::force,
                                             &draw::Scales::impulse, &draw::Scales::momentum,
                                             &draw::Scales::acceleration};
   draw::Scales common;
-  for (const bool last : {false, true}) {
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      if (runs[i].scene.film.marks.empty()) continue;
-      const draw::Scales given = last ? common : given_scales(runs[i].scene, watched[i].cast);
-      runs[i].annotations = annotations(runs[i].scene, page, watched[i].marks, given);
-      if (last) continue;
-      for (const auto member : kAll) {
-        const double own = runs[i].annotations->scales().*member;
-        if (own > 0 && (common.*member == 0 || own < common.*member)) common.*member = own;
-      }
-    }
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const scene::Scene& scene = runs[i].scene;
+    if (scene.film.marks.empty()) continue;
+    const draw::Scales own = draw::run_scales(scene.film.marks, depictor(scene, page), watched[i].marks,
+                                              given_scales(scene, watched[i].cast));
+    for (const auto member : kAll)
+      if (own.*member > 0 && (common.*member == 0 || own.*member < common.*member))
+        common.*member = own.*member;
   }
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (!runs[i].scene.film.marks.empty())
+      runs[i].annotations = annotations(runs[i].scene, page, std::move(watched[i].marks), common);
 }
 
 }  // namespace

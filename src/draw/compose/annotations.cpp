@@ -207,6 +207,8 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
             for (std::size_t j = 0; j < n; ++j) {
               const double change = best[j] + kChange * point;
               if (change >= least) continue;
+              // by its length alone it may cost too much
+              if (change + kWay * way(*offered, j, i) >= least) continue;
               if (const double all = change + cost_of_way(*offered, j, i); all < least)
                 before = j, least = all;
             }
@@ -317,43 +319,51 @@ std::vector<WorldLine> path_lines(const Marks& marks,
   return lines;
 }
 
+Scales run_scales(const Marks& marks, const Illustrator& artist, const RunAhead& ahead, const Scales& given) {
+  Scales all = given;
+  const bool known = std::none_of(marks.vectors.begin(), marks.vectors.end(), [&](const Marks::Vector& each) {
+    const double* scale = scale_of(each.quantity, all);
+    return scale && *scale == 0;
+  });
+  if (known || ahead.moments.empty()) return all;
+  const sim::SceneInfo& cast = artist.scene_info();
+  const sim::Snapshot& start = ahead.moments.front();
+  Scales chosen =
+      draw::scales(marks, cast, ahead.moments, artist.projection(0, start).window(), artist.scale(start));
+  std::vector<SeenInstant> seen;
+  for (const auto* instants : {&ahead.moments, &ahead.between})
+    for (const sim::Snapshot& now : *instants)
+      for (int panel = 0; panel < artist.panels(); ++panel)
+        seen.push_back({&now, artist.projection(panel, now)});
+  const Lettering lettering = film_lettering(artist.weight(), artist.look().type_scale);
+  chosen = kept_whole(marks, cast, seen, lettering.arrow, chosen);
+  for (const auto member :
+       {&Scales::velocity, &Scales::force, &Scales::impulse, &Scales::momentum, &Scales::acceleration})
+    if (all.*member == 0) all.*member = chosen.*member;
+  return all;
+}
+
 Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead ahead, const Scales& given,
                          double fps, int rows)
     : marks_(marks),
       cast_(artist.scene_info()),
       look_(artist.look()),
       colours_(artist.colours()),
-      scales_(given) {
+      scales_(run_scales(marks, artist, ahead, given)) {
   lettering_ = film_lettering(artist.weight(), look_.type_scale, rows);
   ghosts_ = std::move(ahead.ghosts);
-  if (ahead.samples.empty()) {
+  if (ahead.moments.empty()) {
     plans_.resize(std::size_t(artist.panels()));
     paths_.resize(marks_.paths.size());
     return;
   }
 
-  // one scale for each kind of arrow
-  std::vector<sim::Snapshot> moments;
-  std::vector<double> films;
-  for (RunAhead::Sample& sample : ahead.samples)
-    moments.push_back(std::move(sample.now)), films.push_back(sample.film);
+  const std::vector<sim::Snapshot>& moments = ahead.moments;
+  const std::vector<double>& films = ahead.films;
   number_arrows(marks_, cast_, moments, films);
-  const Projection first = artist.projection(0, moments.front());
-  const double scale = artist.scale(moments.front());
-  Scales chosen = draw::scales(marks_, cast_, moments, first.window(), scale);
-  std::vector<SeenInstant> seen;
-  for (const auto& all : {std::span(std::as_const(moments)), std::span(std::as_const(ahead.between))})
-    for (const sim::Snapshot& now : all)
-      for (int panel = 0; panel < artist.panels(); ++panel)
-        seen.push_back({&now, artist.projection(panel, now)});
-  chosen = kept_whole(marks_, cast_, seen, lettering_.arrow, chosen);
-  for (const auto member :
-       {&Scales::velocity, &Scales::force, &Scales::impulse, &Scales::momentum, &Scales::acceleration})
-    if (scales_.*member == 0) scales_.*member = chosen.*member;
-
   if (ahead.track) {
     const std::shared_ptr<const sim::Track> tracks[] = {ahead.track};
-    paths_ = paths_of(marks_, tracks, kPathError / scale);
+    paths_ = paths_of(marks_, tracks, kPathError / artist.scale(moments.front()));
   }
   paths_.resize(marks_.paths.size());
 

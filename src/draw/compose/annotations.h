@@ -17,16 +17,16 @@ class Illustrator;
 /// What is known of a run before its film: what marks need to be the same in every frame, whichever machine
 /// draws it.
 struct RunAhead {
-  /// An instant of the run, and when the film shows it first (s of the film).
-  struct Sample {
-    sim::Snapshot now;
-    double film = 0;
-  };
-  std::vector<Sample> samples;              // in the order of time
+  std::vector<sim::Snapshot> moments;       // in the order of time
+  std::vector<double> films;                // s of the film: when it shows each first
   std::vector<sim::Snapshot> between;       // more instants, for the lengths of arrows
   std::vector<sim::Snapshot> ghosts;        // one a ghost of the marks
   std::shared_ptr<const sim::Track> track;  // of the bodies with paths
 };
+
+/// The scales of a film's arrows: those of `given` that are not 0, and for the others the ones at which all
+/// arrows of their kind are seen whole in the whole run.
+Scales run_scales(const Marks& marks, const Illustrator& artist, const RunAhead& ahead, const Scales& given);
 
 /// The marks of a film. Arrows have one scale, values one number of digits and each label a place that it
 /// leaves only slowly, all found from the run ahead: so a frame is the same in a still, a shard and the whole

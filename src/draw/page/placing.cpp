@@ -14,6 +14,9 @@ namespace {
 
 /// How much of a segment lies within a rectangle, by clipping it at each side.
 double within(const Point& a, const Point& b, const Rect& r) {
+  if (std::max(a.x(), b.x()) < r.x || std::min(a.x(), b.x()) > r.x + r.width ||
+      std::max(a.y(), b.y()) < r.y || std::min(a.y(), b.y()) > r.y + r.height)
+    return 0;
   double from = 0, to = 1;
   const Point d = b - a;
   const std::array<std::pair<double, double>, 4> sides{{{-d.x(), a.x() - r.x},
