@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "gl/damage.h"
@@ -65,6 +66,13 @@ void unpremultiply(std::uint8_t* p, int count) {
   }
 }
 
+// what of a list becomes pixels
+template <class List>
+auto drawn_of(List& list) {
+  return std::tie(list.batches, list.discs, list.boxes, list.strokes, list.polygons, list.texts, list.nodes,
+                  list.points, list.clips);
+}
+
 /// Holds a context current while it draws, and leaves the thread free of it after.
 class Current {
  public:
@@ -94,6 +102,8 @@ struct Renderer::Impl {
   draw::Color ground;
   bool transparent = false;
   std::shared_ptr<const draw::List> still;
+  draw::List last;                   // what moved in the last picture
+  bool last_flat = false;            // whether that is known, and was all of it
   media::Image image;                // what was read last
   std::vector<media::Rect> changed;  // where
   bool all_changed = true;
@@ -192,12 +202,23 @@ void Renderer::draw(const draw::Picture& picture, media::Image& out) { out = dra
 
 const media::Image& Renderer::draw(const draw::Picture& picture) {
   Impl& my = *impl_;
+
+  // a film that stands still shows the same picture again
+  const bool flat = picture.solids.empty();
+  const bool same_backdrop = my.drawn && my.still == picture.still && my.ground == picture.ground &&
+                             my.transparent == picture.transparent;
+  if (same_backdrop && flat && my.last_flat && drawn_of(my.last) == drawn_of(picture.moving)) {
+    my.all_changed = false;
+    my.changed.clear();
+    return my.image;
+  }
+  my.last_flat = false;
+
   const Current current(*my.context);
   my.gl.Viewport(0, 0, my.width, my.height);
 
   // ground and still list, when they are others than last time
-  if (!my.drawn || my.still != picture.still || my.ground != picture.ground ||
-      my.transparent != picture.transparent) {
+  if (!same_backdrop) {
     my.drawn = false;
     my.draw_backdrop(picture);
   }
@@ -230,6 +251,8 @@ const media::Image& Renderer::draw(const draw::Picture& picture) {
     throw Error("OpenGL error " + std::to_string(error) + " while drawing" +
                 (my.trouble.empty() ? "" : ": " + std::exchange(my.trouble, "")));
   }
+  my.last_flat = flat;
+  if (flat) drawn_of(my.last) = drawn_of(picture.moving);
   return my.image;
 }
 

@@ -171,6 +171,25 @@ TEST(Painting, OnlyWhatChangesIsDrawnAndReadAndThatIsAll) {
   EXPECT_LT(read, 0.6);
 }
 
+// A film that stands still: the same things again change nothing, whoever made them, and what comes after is
+// drawn over what was there.
+TEST(Painting, TheSamePictureAgainChangesNothing) {
+  Renderer renderer(216, 108), fresh(216, 108);
+  draw::Picture picture = all_shapes();
+  const media::Image first = drawn(renderer, picture);
+  const draw::Picture again = picture;
+  EXPECT_EQ(drawn(renderer, again), first);
+  ASSERT_NE(renderer.changed(), nullptr);
+  EXPECT_TRUE(renderer.changed()->empty());
+  // a digit of its words
+  picture.moving.add(draw::Text{{300, 300}, draw::Align::left, {{"1.0", draw::Face::bold, 90, kBlue}}});
+  drawn(renderer, picture);
+  picture.moving.texts.back().spans[0].text = "1.1";
+  EXPECT_EQ(drawn(renderer, picture), drawn(fresh, picture));
+  EXPECT_FALSE(renderer.changed()->empty());
+  EXPECT_EQ(drawn(renderer, again), first);
+}
+
 TEST(Painting, SeveralThreadsDrawTheSameBytes) {
   Renderer renderer(216, 108);
   const media::Image expected = drawn(renderer, all_shapes());

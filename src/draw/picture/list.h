@@ -25,6 +25,7 @@ struct Disc {
   double radius = 0;  // to the outer rim
   double line = 0;    // outline width, 0: none
   Color fill{}, outline{};
+  bool operator==(const Disc&) const = default;
 };
 
 /// A rectangle turned about its centre, with an outline drawn inside its edges, and the two axes of its own
@@ -37,6 +38,7 @@ struct Box {
   double axis = 0;       // length of the frame's two axes, 0: none
   double axis_line = 0;  // their width
   Color fill{}, outline{}, axis_color{};
+  bool operator==(const Box&) const = default;
 };
 
 /// A vertex of a stroke.
@@ -44,6 +46,7 @@ struct Node {
   Point at;
   double width = 1;
   Color color{};
+  bool operator==(const Node&) const = default;
 };
 
 enum class Cap : std::uint8_t { butt, round };
@@ -59,6 +62,7 @@ enum class Blend : std::uint8_t {
 struct Winding {
   int turns = 0;  // 0: no coil
   double lead = 0, amplitude = 0;
+  bool operator==(const Winding&) const = default;
 };
 
 /// An open or closed line through nodes [begin, end) of List::nodes, width and colour linear in between,
@@ -69,6 +73,7 @@ struct Stroke {
   Cap cap = Cap::round;
   Blend blend = Blend::over;
   Winding winding{};
+  bool operator==(const Stroke&) const = default;
 };
 
 /// A filled polygon through points [begin, end) of List::points, star-shaped about its first point's
@@ -76,6 +81,7 @@ struct Stroke {
 struct Polygon {
   int begin = 0, end = 0;
   Color fill{};
+  bool operator==(const Polygon&) const = default;
 };
 
 enum class Face : std::uint8_t { regular, medium, bold, math, math_italic, math_bold_italic };
@@ -90,6 +96,7 @@ struct Span {
   double rise = 0;       // page units up from the baseline
   double lead = 0;       // space before it, page units
   bool tabular = false;  // figures of equal width
+  bool operator==(const Span&) const = default;
 };
 
 /// A line of type on a baseline.
@@ -99,6 +106,7 @@ struct Text {
   std::vector<Span> spans;
   // a place that is brought to a whole pixel wherever it moves, and the words with it
   std::optional<Point> whole = {};
+  bool operator==(const Text&) const = default;
 };
 
 /// The height of words at which they are placed.
@@ -171,10 +179,12 @@ struct Batch {
   Kind kind;
   int begin = 0, end = 0;  // into the list of that kind
   int clip = -1;           // index into List::clips, -1: the page
+  bool operator==(const Batch&) const = default;
 };
 
 struct Rect {
   double x = 0, y = 0, width = 0, height = 0;  // page units
+  bool operator==(const Rect&) const = default;
 };
 
 struct List {
