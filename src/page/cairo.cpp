@@ -1,4 +1,5 @@
-// PDF by Cairo: type as glyphs of the fonts that come along in the file, with the text they stand for.
+// PDF by Cairo: type as glyphs of the fonts that come along in the file, with the text they stand for. A page
+// that is described is one figure, with alternative text (page/described.h).
 #ifdef OBSCURA_CAIRO
 
 #include <cairo-ft.h>
@@ -10,6 +11,7 @@
 #include <new>
 #include <numbers>
 
+#include "page/described.h"
 #include "page/error.h"
 #include "page/pen.h"
 
@@ -67,8 +69,11 @@ class Pdf final : public Pen {
  public:
   Pdf(double width, double height, const Sheet& sheet)
       : surface_(cairo_pdf_surface_create_for_stream(take, &bytes_, width, height)),
-        cairo_(cairo_create(surface_)) {
-    cairo_pdf_surface_restrict_to_version(surface_, CAIRO_PDF_VERSION_1_5);
+        cairo_(cairo_create(surface_)),
+        text_(sheet.text),
+        titled_(!sheet.title.empty()) {
+    // newer versions may have objects that are compressed
+    cairo_pdf_surface_restrict_to_version(surface_, CAIRO_PDF_VERSION_1_4);
     cairo_pdf_surface_set_metadata(surface_, CAIRO_PDF_METADATA_TITLE, sheet.title.c_str());
     cairo_pdf_surface_set_metadata(surface_, CAIRO_PDF_METADATA_SUBJECT, sheet.text.c_str());
     cairo_pdf_surface_set_metadata(surface_, CAIRO_PDF_METADATA_CREATOR, "obscura");
@@ -164,6 +169,12 @@ class Pdf final : public Pen {
     cairo_surface_destroy(pixels);
   }
 
+  // after the ground or the pixels: Cairo forgets what came before what covers the page, tags and all
+  void begin_figure() override {
+    for (const char* tag : {kDocument, kFigure})
+      if (!text_.empty()) cairo_tag_begin(cairo_, tag, nullptr);
+  }
+
   void clip(const draw::Rect& r) override {
     cairo_save(cairo_);
     cairo_rectangle(cairo_, r.x, r.y, r.width, r.height);
@@ -176,15 +187,19 @@ class Pdf final : public Pen {
   }
 
   std::vector<std::uint8_t> finish() override {
+    for (const char* tag : {kFigure, kDocument})
+      if (!text_.empty()) cairo_tag_end(cairo_, tag);
     cairo_show_page(cairo_);
     const cairo_status_t drawn = cairo_status(cairo_);
     cairo_surface_finish(surface_);
     const cairo_status_t status = drawn ? drawn : cairo_surface_status(surface_);
     if (status != CAIRO_STATUS_SUCCESS) throw Error(std::string("Cairo: ") + cairo_status_to_string(status));
-    return std::move(bytes_);
+    return text_.empty() ? std::move(bytes_) : described(std::move(bytes_), text_, titled_);
   }
 
  private:
+  static constexpr const char *kDocument = "Document", *kFigure = "Figure";
+
   void ink(Color c) { cairo_set_source_rgba(cairo_, c.r / 255.0, c.g / 255.0, c.b / 255.0, c.a / 255.0); }
   void circle(const Point& center, double radius) {
     cairo_new_path(cairo_);
@@ -201,6 +216,8 @@ class Pdf final : public Pen {
   std::vector<std::vector<std::uint8_t>> kept_;  // pixels that Cairo reads until the page is finished
   cairo_surface_t* surface_;
   cairo_t* cairo_;
+  std::string text_;
+  bool titled_;
   std::array<cairo_font_face_t*, 6> faces_{};
 };
 

@@ -51,9 +51,11 @@ void put_page(const draw::Picture& picture, const Sheet& sheet, const std::optio
   const double scale = sheet.width / (1080 * picture.aspect), height = 1080 * scale;
   if (raster) {
     pen.image({0, 0, raster->width * raster->pixel, raster->height * raster->pixel}, *raster);
+    pen.begin_figure();
   } else {
     if (!picture.transparent)
       pen.fill({{0, 0}, {sheet.width, 0}, {sheet.width, height}, {0, height}}, picture.ground);
+    pen.begin_figure();
     if (picture.still) put(*picture.still, scale, picture.ground, pen);
   }
   put(picture.moving, scale, picture.ground, pen);

@@ -31,6 +31,8 @@ class Pen {
   virtual void image(const draw::Rect& where, const Raster& raster) = 0;
   virtual void clip(const draw::Rect& rect) = 0;
   virtual void unclip() = 0;
+  /// From here on the page is one figure, which has the sheet's text instead of the picture, if there is one.
+  virtual void begin_figure() {}
   /// Ends a page and begins the next.
   virtual void next_page() = 0;
   /// The file.

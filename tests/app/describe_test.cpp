@@ -231,6 +231,10 @@ TEST_F(Describe, PicturesSayWhatTheyShow) {
   EXPECT_THAT(svg, HasSubstr("(b) One disc at 0.3 s."));
   if (obscura("figure scene.toml --at 0 -o a.pdf").exit == 0) {
     EXPECT_THAT(contents(path("a.pdf")), HasSubstr("/Subject"));
+    if (installed("pdfinfo")) {
+      EXPECT_THAT(shell("pdfinfo a.pdf").out, testing::ContainsRegex("Tagged: +yes"));
+      EXPECT_THAT(shell("pdfinfo -struct a.pdf").out, HasSubstr("Figure"));
+    }
   }
 }
 

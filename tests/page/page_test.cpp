@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cctype>
+#include <map>
 #include <string>
 
 #include "needs.h"
@@ -83,8 +85,51 @@ TEST(Page, APdfIsTheSameBytesWheneverItIsMade) {
   const auto one = page(picture(list), Form::pdf, {}), other = page(picture(list), Form::pdf, {});
   EXPECT_EQ(one, other);
   const std::string text(one.begin(), one.end());
-  EXPECT_THAT(text, HasSubstr("%PDF-1.5"));
+  EXPECT_THAT(text, HasSubstr("%PDF-1.4"));
   EXPECT_THAT(text, Not(HasSubstr("CreationDate")));
+}
+
+/// A number behind a word of a file, from some place on.
+std::size_t number_at(const std::string& file, const std::string& word, std::size_t from = 0) {
+  return std::stoul(file.substr(file.find(word, from) + word.size()));
+}
+
+/// Screen readers say the description instead of the picture; the last table of the file has its figure and
+/// its catalogue where they are.
+TEST(Page, APdfThatIsDescribedIsATaggedFigure) {
+  OBSCURA_NEEDS(writes(Form::pdf), "libcairo2-dev, where it is built");
+  draw::List list;
+  list.add(draw::Disc{{100, 200}, 50, 10, {1, 2, 3}, {4, 5, 6}});
+  const Sheet sheet{.width = kWidth, .title = "A fall", .text = "A ball, \u03bc = 0.3, \U0001D44E."};
+  const auto bytes = page(picture(list), Form::pdf, sheet);
+  EXPECT_EQ(page(picture(list), Form::pdf, sheet), bytes);
+  const std::string file(bytes.begin(), bytes.end());
+  const std::size_t table = number_at(file, "startxref\n", file.rfind("startxref"));
+  ASSERT_EQ(file.substr(table, 5), "xref\n");
+  const std::size_t root = number_at(file, "/Root ", table);
+  // entries: a number and 1, then the place
+  std::size_t line = table + 5;
+  std::map<std::size_t, std::string> objects;
+  while (std::isdigit(file[line])) {
+    const std::size_t number = std::stoul(file.substr(line));
+    line = file.find('\n', line) + 1;
+    const std::size_t place = std::stoul(file.substr(line, 10));
+    line += 20;
+    objects[number] = file.substr(place, file.find("endobj", place) - place);
+    EXPECT_EQ(std::stoul(objects[number]), number);
+  }
+  ASSERT_EQ(objects.size(), 2u);
+  for (const char* key :
+       {"/Type /Catalog", "/StructTreeRoot", "/MarkInfo", "/Lang (en)", "/DisplayDocTitle true"})
+    EXPECT_THAT(objects[root], HasSubstr(key));
+  objects.erase(root);
+  EXPECT_THAT(objects.begin()->second, HasSubstr("/S /Figure"));
+  EXPECT_THAT(objects.begin()->second, HasSubstr("/Alt <FEFF004100200062"));
+  EXPECT_THAT(objects.begin()->second, HasSubstr("03BC0020003D00200030002E0033002C0020D835DC4E002E>"));
+  EXPECT_THAT(file.substr(table), HasSubstr("/Prev " + std::to_string(number_at(file, "startxref\n"))));
+  // what is not described has no tags
+  const auto plain = page(picture(list), Form::pdf, {.width = kWidth, .title = "A fall"});
+  EXPECT_THAT(std::string(plain.begin(), plain.end()), Not(HasSubstr("/Figure")));
 }
 
 }  // namespace
