@@ -93,6 +93,7 @@ Painter::Painter(const Functions& gl, int width, int height)
 Painter::~Painter() { gl_.DeleteTextures(1, &edge_texture_); }
 
 void Painter::paint(const draw::List& list, draw::Color ground, bool transparent, Damage& damage) {
+  ground_ = ground, transparent_ = transparent;
   runs_.clear();
   discs_.clear();
   boxes_.clear();
@@ -107,8 +108,7 @@ void Painter::paint(const draw::List& list, draw::Color ground, bool transparent
 
   gl_.Enable(GL_SCISSOR_TEST);
   gl_.Enable(GL_BLEND);
-  gl_.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  for (const Run& run : runs_) draw(run, ground, transparent);
+  for (const Run& run : runs_) draw(run);
   gl_.Disable(GL_SCISSOR_TEST);
   gl_.Disable(GL_BLEND);
 }
@@ -123,6 +123,7 @@ void Painter::encode(const draw::List& list, const draw::Batch& batch, Damage& d
                            float(std::ceil((r.y + r.height) * scale_ - 1e-6))};
   }
   if (!any(clip_)) return;
+  halo_ = batch.halo;
   scissor_ = {int(clip_.x0), int(clip_.y0), int(clip_.x1 - clip_.x0), int(clip_.y1 - clip_.y0)};
 
   for (int i = batch.begin; i < batch.end; ++i) {
@@ -170,18 +171,29 @@ void Painter::mark(std::span<const Damage::Corner> polygon, const Bounds& seen, 
   if (within.x0 <= within.x1 && within.y0 <= within.y1) damage.mark(polygon, within);
 }
 
-void Painter::run(Shape shape, int first, int end) {
+// A halo of the ground's colour is a hole where the ground is left out.
+bool Painter::erases(draw::Color color) const {
+  return halo_ && transparent_ && color.r == ground_.r && color.g == ground_.g && color.b == ground_.b;
+}
+
+void Painter::run(Shape shape, int first, int end, bool erases) {
   const auto same = [](const Damage::Rect& a, const Damage::Rect& b) {
     return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
   };
-  if (!runs_.empty() && runs_.back().shape == shape && same(runs_.back().scissor, scissor_)) {
+  if (!runs_.empty() && runs_.back().shape == shape && runs_.back().erases == erases &&
+      same(runs_.back().scissor, scissor_)) {
     runs_.back().end = end;
   } else {
-    runs_.push_back({shape, first, end, scissor_});
+    runs_.push_back({shape, first, end, scissor_, erases});
   }
 }
 
 void Painter::add(const draw::Disc& disc, Damage& damage) {
+  if (disc.line > 0 && erases(disc.outline) && !erases(disc.fill)) {
+    // its rim alone is a halo
+    add(draw::Disc{disc.center, disc.radius, 0, disc.outline, disc.outline}, damage);
+    return add(draw::Disc{disc.center, disc.radius - disc.line, 0, disc.fill, disc.fill}, damage);
+  }
   const auto x = float(disc.center.x() * scale_), y = float(disc.center.y() * scale_);
   const auto outer = float(disc.radius * scale_);
   const auto inner = float(std::max(disc.radius - disc.line, 0.0) * scale_);
@@ -189,7 +201,7 @@ void Painter::add(const draw::Disc& disc, Damage& damage) {
   if (!(outer > 0) || !touches({x - reach, y - reach, x + reach, y + reach}, damage)) return;
   discs_.push_back({x, y, outer, inner, disc.fill, disc.outline});
   const int end = int(discs_.size());
-  run(inner < kDot ? Shape::dot : Shape::disc, end - 1, end);
+  run(inner < kDot ? Shape::dot : Shape::disc, end - 1, end, erases(disc.fill));
 }
 
 void Painter::add(const draw::Box& box, Damage& damage) {
@@ -224,7 +236,8 @@ void Painter::add(const draw::Box& box, Damage& damage) {
                         draw::Color outline) {
     layered_.push_back({layer, shape,
                         Box{float(center.x()), float(center.y()), float(x), float(y), float(u.x()),
-                            float(u.y()), float(outlined), float(dot), fill, outline}});
+                            float(u.y()), float(outlined), float(dot), fill, outline},
+                        erases(fill)});
   };
   const Shape shape = half.minCoeff() - line < kSlab ? Shape::slab : line > 0 ? Shape::box : Shape::bar;
   push(shape, half.x(), half.y(), line, 0, box.fill, box.outline);
@@ -243,7 +256,7 @@ void Painter::lay_boxes() {
   for (const Layered& next : layered_) {
     boxes_.push_back(next.box);
     const int end = int(boxes_.size());
-    run(next.shape, end - 1, end);
+    run(next.shape, end - 1, end, next.erases);
   }
   layered_.clear();
   std::fill(layers_.begin(), layers_.end(), 0);
@@ -269,7 +282,7 @@ void Painter::add(const draw::List& list, const draw::Stroke& stroke, Damage& da
   run(stroke.blend == draw::Blend::darken    ? Shape::darken
       : stroke.blend == draw::Blend::lighten ? Shape::lighten
                                              : Shape::stroke,
-      int(first), int(strip_.indices.size()));
+      int(first), int(strip_.indices.size()), erases(nodes.front().color));
 }
 
 void Painter::add(const draw::List& list, const draw::Polygon& polygon, Damage& damage) {
@@ -297,13 +310,13 @@ void Painter::add(const draw::List& list, const draw::Polygon& polygon, Damage& 
       made.corners[2 * i] = edge.px, made.corners[2 * i + 1] = edge.py;
     }
     const int end = int(quadrangles_.size());
-    return run(Shape::quadrangle, end - 1, end);
+    return run(Shape::quadrangle, end - 1, end, erases(polygon.fill));
   }
   const int first = int(polygons_.size());
   for (const Band& band : banded(outline_, page.y0, page.y1, edges_))
     polygons_.push_back(
         {page.x0, band.y0, page.x1, band.y1, float(band.first), float(band.count), polygon.fill});
-  run(Shape::polygon, first, int(polygons_.size()));
+  run(Shape::polygon, first, int(polygons_.size()), erases(polygon.fill));
 }
 
 void Painter::add(const draw::Text& text, Damage& damage) {
@@ -354,7 +367,8 @@ void Painter::upload() {
   }
 }
 
-void Painter::draw(const Run& run, draw::Color ground, bool transparent) {
+void Painter::draw(const Run& run) {
+  gl_.BlendFunc(run.erases ? GL_ZERO : GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   gl_.Scissor(run.scissor.x, run.scissor.y, run.scissor.width, run.scissor.height);
   const int count = run.end - run.first;
   const auto quads = [&](const Program& program, VertexArray& array) {
@@ -396,9 +410,9 @@ void Painter::draw(const Run& run, draw::Color ground, bool transparent) {
       stroke_program_.use();
       strip_array_.bind();
       // without a ground to mix with, more of a colour is more of its ink on either theme
-      const bool mixed = run.shape != Shape::stroke && !transparent;
+      const bool mixed = run.shape != Shape::stroke && !transparent_;
       const auto level = [&](std::uint8_t c) { return mixed ? float(c) / 255.0f : 0.0f; };
-      gl_.Uniform4f(ground_uniform_, level(ground.r), level(ground.g), level(ground.b), level(255));
+      gl_.Uniform4f(ground_uniform_, level(ground_.r), level(ground_.g), level(ground_.b), level(255));
       if (run.shape != Shape::stroke)
         gl_.BlendEquation(mixed && run.shape == Shape::darken ? GL_MIN : GL_MAX);
       gl_.DrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT,

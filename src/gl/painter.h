@@ -54,6 +54,7 @@ class Painter {
     Shape shape;
     int first = 0, end = 0;  // instances; of strokes, indices
     Damage::Rect scissor;
+    bool erases = false;  // takes away what lies below
   };
 
   /// A box or a frame, and how many lie below it at most.
@@ -61,6 +62,7 @@ class Painter {
     int layer;
     Shape shape;
     Box box;
+    bool erases;
   };
 
   void encode(const draw::List& list, const draw::Batch& batch, Damage& damage);
@@ -72,9 +74,10 @@ class Painter {
   void add(const draw::Text& text, Damage& damage);
   bool touches(const Bounds& bounds, Damage& damage) const;
   static void mark(std::span<const Damage::Corner> polygon, const Bounds& seen, Damage& damage);
-  void run(Shape shape, int first, int end);
+  bool erases(draw::Color color) const;
+  void run(Shape shape, int first, int end, bool erases = false);
   void upload();
-  void draw(const Run& run, draw::Color ground, bool transparent);
+  void draw(const Run& run);
 
   const Functions& gl_;
   int width_, height_;
@@ -87,8 +90,11 @@ class Painter {
   GLuint edge_texture_ = 0;
   Glyphs glyph_pictures_;
 
+  draw::Color ground_;
+  bool transparent_ = false;
   Bounds clip_;  // of the batch at hand
   Damage::Rect scissor_;
+  bool halo_ = false;
   std::vector<Run> runs_;
   std::vector<Disc> discs_;
   std::vector<Box> boxes_;

@@ -171,6 +171,45 @@ TEST(Painting, OnlyWhatChangesIsDrawnAndReadAndThatIsAll) {
   EXPECT_LT(read, 0.6);
 }
 
+// Halos and plates cover what lies below with the ground's colour: where there is no ground they are holes,
+// so that over any slide they are of the slide's colour. Other things of that colour are not.
+TEST(Painting, HalosAreHolesWhereThereIsNoGround) {
+  draw::Picture picture;
+  picture.aspect = 2;
+  picture.ground = kGround;
+  draw::List& list = picture.moving;
+  list.add(draw::Disc{{500, 500}, 400, 0, kRed, kRed});
+  list.halo(true);
+  draw::Color half = kGround;
+  half.a = 150;
+  list.add(draw::Box{.center = {300, 500}, .x_axis = {1, 0}, .half = {80, 80}, .fill = half});
+  list.add({{{500, 200}, 60, kGround}, {{560, 800}, 60, kGround}}, draw::Cap::butt);
+  list.add({{700, 400}, {800, 500}, {700, 600}, {680, 500}}, kGround);
+  list.add(draw::Disc{{300, 700}, 60, 20, kBlue, kGround});
+  list.halo(false);
+  list.add(draw::Disc{{400, 700}, 60, 0, kGround, kGround});
+  Renderer renderer(216, 108);
+  const media::Image opaque = drawn(renderer, picture);
+  picture.transparent = true;
+  const media::Image clear = drawn(renderer, picture);
+  EXPECT_EQ(clear.row(50)[4 * 53 + 3], 0);                  // in the stroke
+  EXPECT_EQ(clear.row(50)[4 * 73 + 3], 0);                  // in the polygon
+  EXPECT_NEAR(clear.row(50)[4 * 30 + 3], 255 - half.a, 1);  // under the plate
+  EXPECT_NEAR(at(clear, 30, 50).r, kRed.r, 2);              // which leaves the colour that is there
+  EXPECT_EQ(clear.row(70)[4 * 40 + 3], 255);                // of the disc
+  EXPECT_EQ(at(clear, 30, 70), kBlue);                      // within its rim
+  EXPECT_LT(clear.row(70)[4 * 25 + 3], 100);                // which is none
+  // over the ground it is the other picture
+  for (int y = 0; y < clear.height; ++y)
+    for (int x = 0; x < clear.width; ++x)
+      for (int c = 0; c < 3; ++c) {
+        const std::uint8_t* p = clear.row(y) + 4 * x;
+        const int ground = c == 0 ? kGround.r : c == 1 ? kGround.g : kGround.b;
+        EXPECT_NEAR((p[c] * p[3] + ground * (255 - p[3])) / 255.0, opaque.row(y)[4 * x + c], 2)
+            << x << " " << y;
+      }
+}
+
 // A film that stands still: the same things again change nothing, whoever made them, and what comes after is
 // drawn over what was there.
 TEST(Painting, TheSamePictureAgainChangesNothing) {

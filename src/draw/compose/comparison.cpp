@@ -75,7 +75,9 @@ void write_in_corner(const Formula& name, const std::vector<Span>& spans, const 
                low = at.y() + std::max(0.22 * size, name.descent) + around;
   Color plate = colours.room;
   plate.a = kNamePlate;
+  list.halo(true);
   list.add({{left, high}, {right, high}, {right, low}, {left, low}}, plate);
+  list.halo(false);
   add(name, at, list);
   if (!spans.empty()) list.add(text);
 }

@@ -191,7 +191,9 @@ void Notes::plate(const Point& center, const Point& size, std::uint8_t strength)
   color.a = std::uint8_t(kPlate * strength / 255);
   Box box;
   box.center = center, box.x_axis = {1, 0}, box.half = size / 2 + Point(1.2, 0.8) * point_, box.fill = color;
+  list_.halo(true);
   list_.add(box);
+  list_.halo(false);
 }
 
 // The convex forms that a body is made of, round ones with so many corners; none if it is not wholly before
@@ -354,7 +356,9 @@ void Notes::finish() {
   mark_tails();
   for (const auto& [at, ink, hang] : dots_) {
     list_.hang(hang);
+    list_.halo(true);
     list_.add(Disc{at, dot_radius_ + 0.6 * point_, 0, colours_.room, colours_.room});
+    list_.halo(false);
     list_.add(Disc{at, dot_radius_, 0, ink, ink});
   }
   const auto write = [&](const Word& word, const Point& center) {

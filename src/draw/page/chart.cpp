@@ -68,7 +68,9 @@ void widen(PlotArea& area) {
 // what keeps a head off lines
 void draw_halo(const Series& line, const Point& at, double unit, Color ground, List& list) {
   const int marker = marker_of(line.style);
+  list.halo(true);
   add_marker(marker, at, (kHead + (marker == 0 ? kAround : kMarkerAround)) * unit, ground, list);
+  list.halo(false);
 }
 
 // where a line is now: a dot, or the marker along it
@@ -274,7 +276,9 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
       // a subject of its own: the markers along the line become more
       list.of({Subject::What::chart, number + kMostLines / 2 + int(i)});
       if (within[i] && inside && !keyed && marker_of(line.style) == 0) {
+        list.halo(true);
         list.add(Disc{at, (kHead + kAround) * unit, kAround * unit, line.color, colours_.ground});
+        list.halo(false);
       } else if (within[i] && inside) {
         if (!keyed) draw_halo(line, at, unit, colours_.ground, list);
         draw_head(line, at, unit, list);

@@ -351,8 +351,10 @@ void draw_dots(const Plot& plot, const PlotArea& area, const Palette& colours, L
     const Point p = area.at(dot.along, dot.value);
     // a halo keeps it apart from lines; from an axis it would take a piece, and the tick
     const double halo = (kDotRadius + 0.6) * unit;
+    list.halo(true);
     if (p.x() - area.left > halo && area.bottom - p.y() > halo)
       list.add(Disc{p, halo, 0, colours.ground, colours.ground});
+    list.halo(false);
     list.add(Disc{p, kDotRadius * unit, 0, colours.ink, colours.ink});
     // at the right end above it, where the line's name is beside it
     const bool last = p.x() > area.right - 10 * unit;

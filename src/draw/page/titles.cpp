@@ -53,7 +53,9 @@ void draw_card(const Card& card, double strength, const Rect& page, double weigh
     return color;
   };
   const Point low(page.x, page.y), high(page.width, page.height);
+  list.halo(true);
   list.add({low, {high.x(), low.y()}, high, {low.x(), high.y()}}, faded(colours.ground));
+  list.halo(false);
   const double width = 0.8 * page.width;
   const auto title = wrapped(card.title, Face::bold, kCardTitle * weight, width),
              text = wrapped(card.text, Face::regular, kText * weight, width);
@@ -167,7 +169,9 @@ void draw_titles(const Titles& titles, const Layout& layout, double aspect, cons
   if (const double cover = covered(titles, film); cover > 0) {
     Color color = colours.ground;
     color.a = std::uint8_t(std::lround(255 * cover));
+    list.halo(true);
     list.add({{0, 0}, {page.width, 0}, {page.width, page.height}, {0, page.height}}, color);
+    list.halo(false);
   }
 }
 

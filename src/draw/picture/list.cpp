@@ -9,10 +9,11 @@
 namespace obscura::draw {
 
 void List::mark(Kind kind, int end) {
-  if (!batches.empty() && batches.back().kind == kind && batches.back().clip == clip_) {
+  if (!batches.empty() && batches.back().kind == kind && batches.back().clip == clip_ &&
+      batches.back().halo == halo_) {
     batches.back().end = end;
   } else {
-    batches.push_back({kind, end - 1, end, clip_});
+    batches.push_back({kind, end - 1, end, clip_, halo_});
   }
 }
 
@@ -58,6 +59,8 @@ void List::clip(const Rect& rect) {
 
 void List::unclip() { clip_ = -1; }
 
+void List::halo(bool is) { halo_ = is; }
+
 void List::of(Subject subject) {
   subject.part = part;
   of(subject, {});
@@ -101,6 +104,7 @@ void List::add(const List& list, double k, const Point& at) {
     } else {
       unclip();
     }
+    halo(batch.halo);
     for (int i = batch.begin; i < batch.end; ++i) {
       const auto n = std::size_t(i);
       const About& about = whose[std::size_t(batch.kind)][n];
@@ -146,6 +150,7 @@ void List::add(const List& list, double k, const Point& at) {
       }
     }
   }
+  halo(false);
   for (Trail trail : list.trails) {
     trail.begin += strokes_before, trail.end += strokes_before, trail.widest *= k;
     trail.origin = moved(trail.origin), trail.scale *= k;

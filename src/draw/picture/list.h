@@ -179,6 +179,7 @@ struct Batch {
   Kind kind;
   int begin = 0, end = 0;  // into the list of that kind
   int clip = -1;           // index into List::clips, -1: the page
+  bool halo = false;       // they keep others off what lies below
   bool operator==(const Batch&) const = default;
 };
 
@@ -214,6 +215,9 @@ struct List {
   /// Clips everything that is added after this call to `rect`, until the next call of clip or unclip.
   void clip(const Rect& rect);
   void unclip();
+  /// Everything that is added after this call is a halo or a plate, which covers what lies below it with the
+  /// colour of the ground, until the next call.
+  void halo(bool is);
   /// Everything that is added after this call is of this subject, until the next call.
   void of(Subject subject);
   /// Everything that is added after this call hangs there, until the next call of this or of `of`.
@@ -225,6 +229,7 @@ struct List {
 
  private:
   int clip_ = -1;
+  bool halo_ = false;
   void mark(Kind kind, int end);
   void of(const Subject& subject, const std::optional<Hang>& hang);
 };
@@ -236,7 +241,7 @@ struct Solids;
 struct Picture {
   double aspect = 16.0 / 9;  // width over height
   Color ground;
-  bool transparent = false;  // leave the ground out
+  bool transparent = false;  // leave the ground out: halos of its colour take away what lies below
   std::shared_ptr<const List> still;
   std::vector<std::shared_ptr<const Solids>> solids;  // one a panel
   List moving;

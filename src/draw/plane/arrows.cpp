@@ -39,8 +39,10 @@ void draw_break(const Arrow& arrow, double weight, Color room, Color ink, List& 
   if (!(size > 0)) return;
   const Point middle = arrow.tail + 0.5 * shaft * u, half = 0.5 * kBreakGap * size * u,
               slant = size * (kBreakAcross * v + kBreakAlong * u);
+  list.halo(true);
   list.add({middle - half + slant, middle + half + slant, middle + half - slant, middle - half - slant},
            room);
+  list.halo(false);
   for (const Point& at : {Point(middle - half), Point(middle + half)})
     list.add({{at - slant, 0.6 * kArrowLine * weight, ink}, {at + slant, 0.6 * kArrowLine * weight, ink}},
              Cap::butt);
@@ -134,10 +136,12 @@ void draw_arrows(const std::vector<Arrow>& arrows, const std::vector<Color>& ink
   Subject halos = own;
   halos.index += kHalos;
   list.of(halos);
+  list.halo(true);
   for (const Arrow& a : arrows)
     if (a.bare > 0) shaft(a, kHalo * weight * a.grow, room);
   for (const Arrow& a : arrows)
     if (a.bare > 1 && beside(a)) hang(a), list.add(head(a, weight, kHalo * weight * a.grow), room);
+  list.halo(false);
   list.of(own);
   for (std::size_t i = 0; i < arrows.size(); ++i) shaft(arrows[i], 0, inks[i]);
   for (std::size_t i = 0; i < arrows.size(); ++i)
