@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "draw/picture/error.h"
@@ -337,39 +338,60 @@ Text with_all_signs(const Text& text) {
   return out;
 }
 
-Line shape(const Text& text) {
+namespace {
+
+/// A glyph of shaped letters, in the font's units.
+struct Placed {
+  std::uint32_t index;
+  int x_offset, y_offset, x_advance;
+};
+
+// The letters of a face, shaped. Films say the same words in frame after frame: what a thread has shaped it
+// keeps.
+const std::vector<Placed>& glyphs_of(Face face, const std::string& letters, bool tabular) {
+  constexpr std::size_t kKept = 4096;
   thread_local Buffer buffer;
+  thread_local std::unordered_map<std::string, std::vector<Placed>> kept;
   // named, not guessed: the locale must not choose glyphs
   static const hb_language_t language = hb_language_from_string("en", -1);
 
+  const std::string key = letters + char(2 * int(face) + (tabular ? 1 : 0));
+  if (const auto found = kept.find(key); found != kept.end()) return found->second;
+  if (kept.size() >= kKept) kept.clear();
+  hb_buffer_reset(buffer.it);
+  hb_buffer_add_utf8(buffer.it, letters.data(), int(letters.size()), 0, int(letters.size()));
+  hb_buffer_set_language(buffer.it, language);
+  hb_buffer_guess_segment_properties(buffer.it);
+  const hb_feature_t figures{HB_TAG('t', 'n', 'u', 'm'), 1, HB_FEATURE_GLOBAL_START, HB_FEATURE_GLOBAL_END};
+  hb_shape(font(face).get(), buffer.it, &figures, tabular ? 1 : 0);
+  unsigned count = 0;
+  const hb_glyph_info_t* infos = hb_buffer_get_glyph_infos(buffer.it, &count);
+  const hb_glyph_position_t* places = hb_buffer_get_glyph_positions(buffer.it, &count);
+  std::vector<Placed>& glyphs = kept[key];
+  for (unsigned i = 0; i < count; ++i)
+    glyphs.push_back({infos[i].codepoint, places[i].x_offset, places[i].y_offset, places[i].x_advance});
+  return glyphs;
+}
+
+}  // namespace
+
+Line shape(const Text& text) {
   Line line;
   line.spans.reserve(text.spans.size());
   for (const Span& span : text.spans) {
-    const Font& face = font(span.face);
-    hb_buffer_reset(buffer.it);
     // most are as they were written
     const bool own = span.face >= Face::math_italic && font_file(span.face).alphabets;
-    const std::string letters = own ? characters_of(span) : std::string();
-    const std::string& shown = own ? letters : span.text;
-    hb_buffer_add_utf8(buffer.it, shown.data(), int(shown.size()), 0, int(shown.size()));
-    hb_buffer_set_language(buffer.it, language);
-    hb_buffer_guess_segment_properties(buffer.it);
-    const hb_feature_t tabular{HB_TAG('t', 'n', 'u', 'm'), 1, HB_FEATURE_GLOBAL_START, HB_FEATURE_GLOBAL_END};
-    hb_shape(face.get(), buffer.it, &tabular, span.tabular ? 1 : 0);
-
-    unsigned count = 0;
-    const hb_glyph_info_t* infos = hb_buffer_get_glyph_infos(buffer.it, &count);
-    const hb_glyph_position_t* places = hb_buffer_get_glyph_positions(buffer.it, &count);
-    const double em = span.size / face.units();
+    const std::vector<Placed>& placed =
+        glyphs_of(span.face, own ? characters_of(span) : span.text, span.tabular);
+    const double em = span.size / font(span.face).units();
     line.width += span.lead;
     Shaped shaped{span.face, span.size, span.color, {}};
-    shaped.glyphs.reserve(count);
+    shaped.glyphs.reserve(placed.size());
     double pen = 0;
-    for (unsigned i = 0; i < count; ++i) {
+    for (const Placed& glyph : placed) {
       shaped.glyphs.push_back(
-          {infos[i].codepoint,
-           {line.width + em * (pen + places[i].x_offset), -span.rise - em * places[i].y_offset}});
-      pen += places[i].x_advance;
+          {glyph.index, {line.width + em * (pen + glyph.x_offset), -span.rise - em * glyph.y_offset}});
+      pen += glyph.x_advance;
     }
     line.width += em * pen;
     line.spans.push_back(std::move(shaped));
