@@ -87,6 +87,9 @@ struct Offered {
   std::optional<std::pair<Point, Point>> arrow{};  // from tail to tip: that it names, and does not pass over
 };
 
+/// Of the sizes of two labels together: nearer than that they lie on each other.
+inline constexpr double kNearWords = 0.56;
+
 /// What a film knows of its labels before it draws one.
 struct LabelPlan {
   /// From one time of the film to another the words go over to another place.
@@ -98,10 +101,21 @@ struct LabelPlan {
     int first = 0;
     std::vector<Move> moves;
     bool covers = true;  // whether something may lie under them
+    bool yields = true;  // whether they fade where they come over other words, which they do only in passing
   };
   std::map<WordKey, ValueRange> ranges;
   std::map<WordKey, Course> courses;
 };
+
+/// A place between two of the same words, a part of the way from one to the other. A name goes around what it
+/// names, at `anchor`.
+Point on_its_way(WordKey::Kind kind, const Point& anchor, const Point& from, const Point& to, double part);
+
+/// Where the words of a course stand at a time of the film, and how far their leader is drawn, 0 to 1.
+std::pair<Placing::Candidate, double> place_of_course(const LabelPlan::Course& course, WordKey::Kind kind,
+                                                      const Point& anchor,
+                                                      const std::vector<Placing::Candidate>& places,
+                                                      double film);
 
 /// How marks are drawn at one instant.
 struct Annotating {

@@ -2,7 +2,8 @@
 // there, and how far it is from what is usual. The course i(t) is the one of least
 //   sum c_i dt + a for each change + b for each unit of its way
 // which dynamic programming finds (Viterbi). Labels are planned one after another; the earlier ones are in
-// the way of the later ones. On its way from one place to another a label takes as long as its speed says.
+// the way of the later ones, also while they go from one place to another, which takes as long as the speed
+// of a label says.
 
 #include "draw/compose/annotations.h"
 
@@ -20,24 +21,33 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kChange = 14;                   // points: of a change of place, as against a second of cost
-constexpr double kWay = 0.12;                    // of each unit of its way
-constexpr double kSpeed = 1.7;                   // page units a frame that a label moves by itself
+constexpr double kChange = 14;  // points: of a change of place, as against a second of cost
+constexpr double kWay = 0.12;   // of each unit of its way
+constexpr double kSpeed = 1.7;  // page units a frame that a label of the usual size moves by itself
 constexpr double kQuickest = 0.3, kSlowest = 4;  // s: a change
 constexpr double kHeadWide = 10;     // page units: of an arrow's head, which is wider than its line
 constexpr double kPathError = 0.2;   // page units
 constexpr double kCurveError = 0.3;  // of a path's error: of the points among which the needed ones are found
 constexpr double kFaintest = 0.22;   // of a path's oldest end
-constexpr double kShared = 400;      // points: of lying on another label
+constexpr double kShared = 4000;     // points: of a second of lying on another label
+constexpr double kPassing =
+    0.4;  // of the time that a label is shown: for less than that it lies on others in passing
 constexpr double kLedThrough = 120;  // points: of a leader through another label
 constexpr double kOver = 8;          // of each unit of its own arrow that it passes over
 constexpr double kTouches = 120;     // page units: of touching it on the way
 
-double overlap(const Offered& a, int i, const Offered& b, int j) {
-  const Point d = (a.places[std::size_t(i)].center - b.places[std::size_t(j)].center).cwiseAbs();
-  const Point room = 0.56 * (a.size + b.size) - d;
+/// A label that is planned, where it stands at a sample.
+struct Planned {
+  const Offered* label;
+  Placing::Candidate at;
+};
+
+// of the smaller label, which part lies on the other
+double overlap(const Offered& a, const Point& at, const Planned& b) {
+  const Point d = (at - b.at.center).cwiseAbs();
+  const Point room = kNearWords * (a.size + b.label->size) - d;
   if (!(room.x() > 0 && room.y() > 0)) return 0;
-  const Point least = a.size.cwiseMin(b.size);
+  const Point least = a.size.cwiseMin(b.label->size);
   return std::min(room.x() / least.x(), 1.0) * std::min(room.y() / least.y(), 1.0);
 }
 
@@ -57,8 +67,9 @@ double under(const Point& a, const Point& b, const Point& center, const Point& s
 }
 
 // whether the line from words to what they name runs through other words
-bool leads_through(const Offered& a, std::size_t i, const Offered& b, std::size_t j) {
-  return a.places[i].leader && under(a.anchor, a.places[i].center, b.places[j].center, b.size) > 0;
+bool leads_through(const Offered& a, const Placing::Candidate& at, const Offered& b,
+                   const Placing::Candidate& other) {
+  return at.leader && under(a.anchor, at.center, other.center, b.size) > 0;
 }
 
 // how far it is from one place to another: a name goes around its body
@@ -82,10 +93,49 @@ double cost_of_way(const Offered& label, std::size_t i, std::size_t j) {
   return cost;
 }
 
+/// The samples that have a label, and what it offers there.
+using Seen = std::vector<std::pair<std::size_t, const Offered*>>;
+/// Of each sample the labels that are planned.
+using Taken = std::vector<std::vector<Planned>>;
+
+// the cost a second of lying on other labels at a sample, part of the time of the way from place i to place j
+double on_others(const std::vector<Planned>& others, const Offered& label, std::size_t i, std::size_t j,
+                 double part, double point) {
+  if (others.empty()) return 0;
+  const Point at = on_its_way(label.key.kind, label.anchor, label.places[i].center, label.places[j].center,
+                              part * part * (3 - 2 * part));
+  double cost = 0;
+  for (const Planned& other : others)
+    if (const double both = overlap(label, at, other); both > 0) cost += kShared * point * (1 + both);
+  return cost;
+}
+
+// how long a label takes from place i to place j, s
+double time_of_way(const Offered& label, std::size_t i, std::size_t j, double speed) {
+  return std::clamp(1.5 * way(label, i, j) / speed, kQuickest, kSlowest);
+}
+
+// the cost of going over other labels from place i to place j, half of the time before sample k
+double cost_of_crossing(const Seen& at, const std::vector<double>& films, const Taken& taken, std::size_t k,
+                        std::size_t i, std::size_t j, double lasting, double point) {
+  const double begin = (films[at[k].first] + films[at[k - 1].first] - lasting) / 2;
+  std::size_t near = k;
+  while (near > 0 && films[at[near].first] > begin) --near;
+  double cost = 0;
+  constexpr int kParts = 8;
+  for (int n = 1; n < kParts; ++n) {
+    const double part = double(n) / kParts, film = begin + part * lasting;
+    while (near + 1 < at.size() && films[at[near + 1].first] <= film) ++near;
+    const auto& [sample, label] = at[near];
+    cost += lasting / kParts * on_others(taken[sample], *label, i, j, part, point);
+  }
+  return cost;
+}
+
 /// How long before its jump, at sample k, a label begins its way from place i to place j: so that of the time
 /// before and after it spends the least at places that cost. On its way it is at half of either.
-double best_lead(const std::vector<std::pair<std::size_t, const Offered*>>& at,
-                 const std::vector<double>& films, std::size_t k, int i, int j, double lasting) {
+double best_lead(const Seen& at, const std::vector<double>& films, const Taken& taken, std::size_t k,
+                 std::size_t i, std::size_t j, double lasting, double point) {
   const double jump = (films[at[k].first] + films[at[k - 1].first]) / 2;
   double best = lasting / 2, least = 1e300;
   for (const double part : {0.5, 0.75, 1.0, 0.25, 0.0}) {
@@ -95,8 +145,8 @@ double best_lead(const std::vector<std::pair<std::size_t, const Offered*>>& at,
       const double film = films[sample];
       if (film < jump - lasting || film > jump + lasting) continue;
       const double gone = std::clamp((film - begin) / (end - begin), 0.0, 1.0);
-      const auto cost = [&](int place) { return offered->places[std::size_t(place)].cost; };
-      sum += (1 - gone) * cost(i) + gone * cost(j);
+      sum += (1 - gone) * offered->places[i].cost + gone * offered->places[j].cost +
+             on_others(taken[sample], *offered, i, j, gone, point);
     }
     if (sum < 0.98 * least) least = sum, best = part * lasting;
   }
@@ -111,14 +161,6 @@ void make_room(std::vector<LabelPlan::Move>& moves, std::size_t first, double un
     moves[m - 1].begin -= early, moves[m - 1].end -= early;
     until = moves[m - 1].begin;
   }
-}
-
-// the place of a course at a sample, without the way between
-int place_at(const LabelPlan::Course& course, double film) {
-  int at = course.first;
-  for (const LabelPlan::Move& move : course.moves)
-    if (film >= (move.begin + move.end) / 2) at = move.to;
-  return at;
 }
 
 // points of a curve that are needed for it to be no farther than `tolerance` from the line through them, by
@@ -174,7 +216,7 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
                                              const std::vector<double>& films, double point, double speed) {
   // the samples that have each label, in the order in which words are set
   std::vector<WordKey> order;
-  std::map<WordKey, std::vector<std::pair<std::size_t, const Offered*>>> seen;
+  std::map<WordKey, Seen> seen;
   for (std::size_t k = 0; k < samples.size(); ++k)
     for (const Offered& each : samples[k]) {
       auto& at = seen[each.key];
@@ -185,9 +227,9 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
   std::stable_partition(order.begin(), order.end(),
                         [&](const WordKey& key) { return seen[key].front().second->places.size() == 1; });
   std::map<WordKey, LabelPlan::Course> planned;
-  std::vector<std::vector<std::pair<const Offered*, int>>> taken(samples.size());
+  Taken taken(samples.size());
   for (const WordKey& key : order) {
-    const auto& at = seen[key];
+    const Seen& at = seen[key];
     const std::size_t n = at.front().second->places.size();
     std::vector<double> best(n, 0), now(n);
     std::vector<std::vector<int>> from(at.size(), std::vector<int>(n, 0));
@@ -209,8 +251,10 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
               if (change >= least) continue;
               // by its length alone it may cost too much
               if (change + kWay * way(*offered, j, i) >= least) continue;
-              if (const double all = change + cost_of_way(*offered, j, i); all < least)
-                before = j, least = all;
+              double all = change + cost_of_way(*offered, j, i);
+              if (all < least)
+                all += cost_of_crossing(at, films, taken, k, j, i, time_of_way(*offered, j, i, speed), point);
+              if (all < least) before = j, least = all;
             }
           }
           now[i] = least;
@@ -218,12 +262,13 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
           now[i] = 0;
         }
         from[k][i] = int(before);
-        double cost = offered->places[i].cost;
-        for (const auto& [other, j] : taken[sample]) {
-          if (const double both = overlap(*offered, int(i), *other, j); both > 0)
+        const Placing::Candidate& there = offered->places[i];
+        double cost = there.cost;
+        for (const Planned& other : taken[sample]) {
+          if (const double both = overlap(*offered, there.center, other); both > 0)
             cost += kShared * point * (1 + both);
-          if (leads_through(*offered, i, *other, std::size_t(j)) ||
-              leads_through(*other, std::size_t(j), *offered, i))
+          if (leads_through(*offered, there, *other.label, other.at) ||
+              leads_through(*other.label, other.at, *offered, there))
             cost += kLedThrough * point;
         }
         now[i] += std::clamp(dt, 0.02, 1.0) * cost;
@@ -243,9 +288,9 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
       LabelPlan::Move move{(here + before) / 2, (here + before) / 2, place[k]};
       if (at[k - 1].first + 1 == at[k].first) {
         // in the middle of its way when it would jump
-        const double far = way(*at[k].second, std::size_t(place[k - 1]), std::size_t(place[k]));
-        const double lasting = std::clamp(1.5 * far / speed, kQuickest, kSlowest);
-        move.begin -= best_lead(at, films, k, place[k - 1], place[k], lasting);
+        const auto from_place = std::size_t(place[k - 1]), to_place = std::size_t(place[k]);
+        const double lasting = time_of_way(*at[k].second, from_place, to_place, speed);
+        move.begin -= best_lead(at, films, taken, k, from_place, to_place, lasting, point);
         move.end = move.begin + lasting;
         make_room(course.moves, shown, move.begin);
         if (move.begin < free) {
@@ -264,8 +309,17 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
     course.covers = !course.moves.empty();
     for (std::size_t k = 0; k < at.size(); ++k)
       course.covers = course.covers || !at[k].second->places[std::size_t(place[k])].clear;
-    for (const auto& [sample, offered] : at)
-      taken[sample].emplace_back(offered, place_at(course, films[sample]));
+    std::size_t covering = 0;
+    for (const auto& [sample, offered] : at) {
+      const auto [stands, led] =
+          place_of_course(course, key.kind, offered->anchor, offered->places, films[sample]);
+      const auto& there = stands;
+      covering += std::any_of(taken[sample].begin(), taken[sample].end(), [&](const Planned& other) {
+        return overlap(*offered, there.center, other) > 0;
+      });
+      taken[sample].push_back({offered, stands});
+    }
+    course.yields = double(covering) < kPassing * double(at.size());
     planned.emplace(key, std::move(course));
   }
   return planned;
@@ -395,7 +449,8 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
       annotate(marks_, scales_, cast_, colours_, artist.projection(panel, moments[k]), moments[k], unused,
                how);
     }
-    plan.courses = courses(offered, films, lettering_.point, kSpeed * fps);
+    plan.courses = courses(offered, films, lettering_.point,
+                           kSpeed * fps * lettering_.point / film_lettering(1, 1).point);
     // lines behind bodies are not among what is avoided
     if (!marks_.paths.empty() || !marks_.ghosts.empty() || artist.longest_trail() > 0)
       for (auto& [key, course] : plan.courses) course.covers = true;

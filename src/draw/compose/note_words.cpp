@@ -137,38 +137,41 @@ Formula Notes::set(const WordKey& key, const std::string& text, double value, st
   return live(text, value, range.low, range.high, unit, type_, ink);
 }
 
-namespace {
-
-// from one place to another, a part of the way around a middle
-Point around(const Point& middle, const Point& from, const Point& to, double part) {
-  const Point a = from - middle, b = to - middle;
+Point on_its_way(WordKey::Kind kind, const Point& anchor, const Point& from, const Point& to, double part) {
+  if (kind != WordKey::name) return from + part * (to - from);
+  const Point a = from - anchor, b = to - anchor;
   const double turn = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)) * part,
                far = a.norm() + part * (b.norm() - a.norm()), s = std::sin(turn), c = std::cos(turn);
   if (!(a.norm() > 0)) return to;
-  return middle + far / a.norm() * Point(c * a.x() - s * a.y(), s * a.x() + c * a.y());
+  return anchor + far / a.norm() * Point(c * a.x() - s * a.y(), s * a.x() + c * a.y());
 }
 
-}  // namespace
+std::pair<Placing::Candidate, double> place_of_course(const LabelPlan::Course& course, WordKey::Kind kind,
+                                                      const Point& anchor,
+                                                      const std::vector<Placing::Candidate>& places,
+                                                      double film) {
+  const int n = int(places.size());
+  const auto at = [&](int i) { return places[std::size_t(std::clamp(i, 0, n - 1))]; };
+  Placing::Candidate now = at(course.first);
+  double led = now.leader ? 1 : 0;
+  for (const LabelPlan::Move& move : course.moves) {
+    if (film <= move.begin) break;
+    const double u = film >= move.end ? 1 : (film - move.begin) / (move.end - move.begin);
+    const double s = u * u * (3 - 2 * u);
+    const Placing::Candidate next = at(move.to);
+    now.center = on_its_way(kind, anchor, now.center, next.center, s);
+    led += s * ((next.leader ? 1 : 0) - led);
+  }
+  now.leader = led > 0;
+  return {now, led};
+}
 
 // where the plan has a word now; on its way from one place to another between both
 Placing::Candidate Notes::planned(const Word& word, double& leader) const {
   const auto found = how_.plan->courses.find(word.key);
-  const int n = int(word.places.size());
-  const auto at = [&](int i) { return word.places[std::size_t(std::clamp(i, 0, n - 1))]; };
-  if (found == how_.plan->courses.end()) return at(0);
-  const LabelPlan::Course& course = found->second;
-  Placing::Candidate now = at(course.first);
-  double led = now.leader ? 1 : 0;
-  for (const LabelPlan::Move& move : course.moves) {
-    if (how_.film <= move.begin) break;
-    const double u = how_.film >= move.end ? 1 : (how_.film - move.begin) / (move.end - move.begin);
-    const double s = u * u * (3 - 2 * u);
-    const Placing::Candidate next = at(move.to);
-    now.center = word.key.kind == WordKey::name ? around(word.anchor, now.center, next.center, s)
-                                                : Point(now.center + s * (next.center - now.center));
-    led += s * ((next.leader ? 1 : 0) - led);
-  }
-  now.leader = led > 0, leader = led;
+  if (found == how_.plan->courses.end()) return word.places.front();
+  const auto [now, led] = place_of_course(found->second, word.key.kind, word.anchor, word.places, how_.film);
+  leader = led;
   return now;
 }
 
@@ -326,6 +329,30 @@ void Notes::avoid_own_arrows() {
   for (const Push& push : pushes(cast_, look, now_)) arrow(push.point, push.point + scale * push.force);
 }
 
+// Words that come over others in passing are not seen there: they fade within their margin. Those with one
+// place do not move, and go before all others.
+void Notes::yield(std::vector<Placed>& placed) {
+  std::vector<std::size_t> order(words_.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_partition(order.begin(), order.end(),
+                        [&](std::size_t i) { return words_[i].places.size() == 1; });
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    Word& word = words_[order[k]];
+    Placed& own = placed[order[k]];
+    const auto course = how_.plan->courses.find(word.key);
+    if (course == how_.plan->courses.end() || !course->second.yields) continue;
+    for (std::size_t n = 0; n < k; ++n) {
+      const Placed& other = placed[order[n]];
+      const Point both = size(word.set) + size(words_[order[n]].set);
+      const Point deep = kNearWords * both - (own.at.center - other.at.center).cwiseAbs();
+      if (!(deep.x() > 0 && deep.y() > 0)) continue;
+      const double within = deep.cwiseQuotient((kNearWords - 0.5) * both).minCoeff();
+      own.strength = std::min(own.strength, 1 - std::min(within, 1.0) * std::min(2 * other.strength, 1.0));
+    }
+    if (own.strength < 1) fade(word.set, own.strength), own.leader *= own.strength;
+  }
+}
+
 void Notes::finish() {
   if (how_.survey) return offer_places();
   // words that move keep to whole pixels: they look the same in every frame, and are cheap to encode
@@ -333,16 +360,13 @@ void Notes::finish() {
     const double pixel = how_.lettering.pixel;
     return pixel > 0 ? Point(std::round(at.x() / pixel) * pixel, std::round(at.y() / pixel) * pixel) : at;
   };
-  struct Placed {
-    Placing::Candidate at;
-    double leader = 1;
-  };
   std::vector<Placed> placed;
   for (const Word& word : words_) {
     Placed& it = placed.emplace_back();
     it.at = how_.plan ? planned(word, it.leader) : placing_.place(size(word.set), word.places);
     if (film()) it.at.center = on_page(word, it.at.center);
   }
+  if (how_.plan) yield(placed);
   // plates lie over bodies and lines but under arrows, which stay whole; one kind after another is drawn in
   // few batches
   for (std::size_t i = 0; film() && i < words_.size(); ++i)
@@ -372,10 +396,11 @@ void Notes::finish() {
   };
   for (std::size_t i = 0; i < words_.size(); ++i) {
     list_.hang(words_[i].hang);
-    if (placed[i].at.leader) lead(words_[i], placed[i].at.center, placed[i].leader);
+    if (placed[i].at.leader && placed[i].strength > 0) lead(words_[i], placed[i].at.center, placed[i].leader);
     if (!film()) write(words_[i], placed[i].at.center);
   }
-  for (std::size_t i = 0; film() && i < words_.size(); ++i) write(words_[i], placed[i].at.center);
+  for (std::size_t i = 0; film() && i < words_.size(); ++i)
+    if (placed[i].strength > 0) write(words_[i], placed[i].at.center);
   list_.hang({});
 }
 

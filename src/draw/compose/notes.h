@@ -41,6 +41,11 @@ class Notes {
     std::optional<Hang> hang;
     std::vector<Point> outline{};  // convex: of the body that it names, where a leader ends
   };
+  /// Where a word stands, and how much of its leader and of itself is seen.
+  struct Placed {
+    Placing::Candidate at;
+    double leader = 1, strength = 1;
+  };
   void hang(const sim::Vec3& a, const sim::Vec3& b);
   bool film() const { return how_.plan != nullptr || how_.survey != nullptr; }
   static Point size(const Formula& f) { return {f.width, f.ascent + f.descent}; }
@@ -58,6 +63,7 @@ class Notes {
   void lead(const Word& word, const Point& center, double strength);
   static Hold hold(const Word& word, const Point& center);
   void offer_places();
+  void yield(std::vector<Placed>& placed);
   bool covers(const WordKey& key) const;
   const std::vector<std::vector<Point>>& outlines();
   bool on_body(const Point& p);
