@@ -986,5 +986,84 @@ color = "orange"
   EXPECT_FALSE(grey(taught, 1));
 }
 
+/// What ties grey bodies recedes with them: a rope over a wheel, a belt, the arrows of what presses them. A
+/// rope on which something hangs that is taught does not.
+TEST(Emphasis, LeavesWhatTiesGreyBodiesGrey) {
+  const char* const text = R"([room]
+size = [8, 4.5]
+[look]
+arrows = ["contact"]
+[[ball]]
+name = "wheel"
+radius = 0.3
+position = [2, 3.5]
+fixed = true
+[[ball]]
+name = "a"
+radius = 0.1
+position = [1.7, 2]
+[[ball]]
+name = "b"
+radius = 0.1
+position = [2.3, 2]
+[[joint]]
+type = "pulley"
+between = ["a", "b"]
+over = ["wheel"]
+[[ball]]
+name = "c"
+radius = 0.3
+position = [4, 3]
+[[ball]]
+name = "d"
+radius = 0.5
+position = [6, 3]
+[[joint]]
+name = "first"
+type = "pin"
+between = ["c", "room"]
+[[joint]]
+name = "second"
+type = "pin"
+between = ["d", "room"]
+[[joint]]
+type = "gear"
+joints = ["first", "second"]
+ratio = 1.6666666666666667
+[[box]]
+name = "crate"
+size = [0.5, 0.5]
+position = [1, 0.25]
+[[box]]
+name = "taught"
+size = [0.5, 0.5]
+position = [7, 0.25]
+)";
+  struct Seen {
+    std::set<int> ropes{}, forces{};  // how light; how red
+  };
+  const auto seen = [&](const std::vector<std::string>& sets) {
+    const scene::Scene scene = scene::parse(text, "a.toml", sets);
+    const draw::Illustrator artist = depictor(scene, {});
+    const auto run = scene.run();
+    const draw::List list = artist.depict(moment(*run, {1, 10}, scene), {}).moving;
+    Seen all;
+    const auto about = list.about(draw::Kind::stroke);
+    for (std::size_t k = 0; k < list.strokes.size(); ++k)
+      if (about[k].subject.what == draw::Subject::What::joint)
+        all.ropes.insert(list.nodes[std::size_t(list.strokes[k].begin)].color.g);
+    for (const draw::Polygon& head : list.polygons) all.forces.insert(head.fill.r - head.fill.b);
+    return all;
+  };
+  const Seen plain = seen({}), one = seen({"look.emphasis=[\"taught\"]"}),
+             rope = seen({"look.emphasis=[\"taught\", \"a\"]"});
+  ASSERT_EQ(plain.ropes.size(), 1u);
+  ASSERT_EQ(one.ropes.size(), 1u);
+  EXPECT_GT(*one.ropes.begin(), *plain.ropes.begin() + 40);
+  EXPECT_EQ(rope.ropes.size(), 2u);
+  EXPECT_EQ(*rope.ropes.begin(), *plain.ropes.begin());
+  EXPECT_GT(one.forces.size(), plain.forces.size());
+}
+
 }  // namespace
 }  // namespace obscura::app

@@ -5,6 +5,7 @@
 #include "draw/page/chart.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -478,10 +479,10 @@ TEST(Plot, LinksOfQuietBodiesRecede) {
   for (const Theme theme : {Theme::paper, Theme::screen}) {
     const Palette colours = palette(theme);
     for (const auto& [a, b] : {std::pair(0, 1), std::pair(-1, 0), std::pair(1, -1)})
-      EXPECT_LT(contrast(link_color(look, colours, a, b), colours.room),
+      EXPECT_LT(contrast(link_color(look, colours, std::array{a, b}), colours.room),
                 0.6 * contrast(colours.spring, colours.room));
     for (const auto& [a, b] : {std::pair(0, 2), std::pair(-1, 2), std::pair(-1, -1)})
-      EXPECT_EQ(link_color(look, colours, a, b), colours.spring);
+      EXPECT_EQ(link_color(look, colours, std::array{a, b}), colours.spring);
     Marks::Vector vector;
     vector.quantity = Quantity::velocity;
     EXPECT_FALSE(color_of(vector, colours) == colours.quiet);

@@ -1,6 +1,7 @@
 #include "draw/picture/theme.h"
 
 #include <array>
+#include <vector>
 
 namespace obscura::draw {
 
@@ -63,12 +64,28 @@ void hush(Paint& paint, const Palette& colours) {
     *color = mix(*color, colours.room, kHushed);
 }
 
-Color link_color(const Look& look, const Palette& colours, int a, int b) {
-  const auto quiet = [&](int body) {
-    return std::size_t(body) < look.bodies.size() && look.bodies[std::size_t(body)].quiet;
+Color link_color(const Look& look, const Palette& colours, std::span<const int> bodies) {
+  bool any = false;
+  for (const int body : bodies) {
+    if (body < 0) continue;
+    if (std::size_t(body) >= look.bodies.size() || !look.bodies[std::size_t(body)].quiet)
+      return colours.spring;
+    any = true;
+  }
+  return any ? mix(colours.spring, colours.room, kHushedLink) : colours.spring;
+}
+
+Color joint_color(const Look& look, const Palette& colours, const sim::SceneInfo& cast, std::size_t joint) {
+  const sim::SceneInfo::Joint& own = cast.joints[joint];
+  std::vector<int> bodies;
+  const auto add = [&](const sim::SceneInfo::Joint& piece) {
+    bodies.push_back(piece.a), bodies.push_back(piece.b);
+    for (const sim::SceneInfo::Joint::Place& place : piece.places) bodies.push_back(place.body);
   };
-  const bool all = (a >= 0 || b >= 0) && (a < 0 || quiet(a)) && (b < 0 || quiet(b));
-  return all ? mix(colours.spring, colours.room, kHushedLink) : colours.spring;
+  add(own);
+  for (const sim::SceneInfo::Joint& other : cast.joints)
+    if (own.kind == sim::JointKind::pulley && other.kind == own.kind && other.rope == own.rope) add(other);
+  return link_color(look, colours, bodies);
 }
 
 Color faintest(Color strong, const Palette& colours) {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <span>
+
 #include "draw/picture/color.h"
 #include "draw/picture/look.h"
+#include "sim/model/snapshot.h"
 
 namespace obscura::draw {
 
@@ -44,9 +47,12 @@ Paint paint(Color color, Theme theme);
 void hush(Paint& paint, const Palette& colours);
 inline constexpr double kHushed = 0.35;
 
-/// The colour of a spring or a joint between two bodies, or a body and the room (-1). It recedes where
-/// neither is to be looked at.
-Color link_color(const Look& look, const Palette& colours, int a, int b);
+/// The colour of what ties bodies, or bodies and the room (-1). It recedes where none of them is to be looked
+/// at.
+Color link_color(const Look& look, const Palette& colours, std::span<const int> bodies);
+
+/// The same of a joint: all that a rope hangs on and lies on and the wheels of a belt are among its bodies.
+Color joint_color(const Look& look, const Palette& colours, const sim::SceneInfo& cast, std::size_t joint);
 
 /// What a trail of this colour fades to: nearer to the room's colour than it, but by contrast as far from it
 /// as 15 % of the way to the ink is, or not faded at all.

@@ -174,6 +174,7 @@ void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& 
 std::vector<Push> pushes(const sim::SceneInfo& cast, const Look& look, const sim::Snapshot& now) {
   std::vector<Push> found;
   const auto wanted = [&](int body) { return body < int(look.bodies.size()) && look.bodies[body].contact; };
+  const auto quiet = [&](bool shown, int body) { return !shown || look.bodies[std::size_t(body)].quiet; };
   const sim::Vec3 up = cast.gravity.norm() > 0 ? sim::Vec3(-cast.gravity) : sim::Vec3::UnitY();
   const auto force = [](const sim::Snapshot::Contact& each) -> const sim::Vec3& { return each.force; };
   each_touching(now, force, 0, [&](const Touching& all) {
@@ -182,18 +183,21 @@ std::vector<Push> pushes(const sim::SceneInfo& cast, const Look& look, const sim
     if ((!on_body && !on_other) || !(all.pressed > 0)) return;
     // the body of the two that is carried
     const bool turned = !on_body || (on_other && all.sum.dot(up) < 0);
-    found.push_back({all.point, turned ? sim::Vec3(-all.sum) : all.sum});
+    found.push_back({all.point, turned ? sim::Vec3(-all.sum) : all.sum,
+                     quiet(on_body, all.first.body) && quiet(on_other, all.first.other)});
   });
   return found;
 }
 
 void draw_contacts(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   std::vector<Arrow> arrows;
+  std::vector<Color> inks;
   for (const Push& push : pushes(stage.cast, stage.look, now)) {
     offer(view.page(push.point), view.page(push.point + stage.force_scale * push.force), view.window,
           stage.layout.weight, arrows);
+    inks.resize(arrows.size(), push.quiet ? stage.colours.quiet : stage.colours.force);
   }
-  draw_arrows(arrows, stage.layout.weight, stage.colours.room, stage.colours.force, list);
+  draw_arrows(arrows, inks, stage.layout.weight, stage.colours.room, list);
 }
 
 }  // namespace obscura::draw

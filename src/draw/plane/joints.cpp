@@ -17,7 +17,7 @@ namespace obscura::draw {
 namespace {
 
 Color color_of_joint(const Stage& stage, std::size_t i) {
-  return link_color(stage.look, stage.colours, stage.cast.joints[i].a, stage.cast.joints[i].b);
+  return joint_color(stage.look, stage.colours, stage.cast, i);
 }
 
 using sim::Vec3;
@@ -373,13 +373,14 @@ void draw_belts(const Stage& stage, const View& view, const sim::Snapshot& now, 
     const double far = (other - one).norm();
     const Vec3 u = (other - one) / far, across(-u.y(), u.x(), 0);
     const double turn = std::acos(std::clamp((joint.offset_a - joint.offset_b) / far, -1.0, 1.0));
+    const Color color = color_of_joint(stage, i);
     nodes.clear();
     const auto arc = [&](const Vec3& center, double radius, double from, double to) {
       const int pieces = std::max(1, int(std::ceil((to - from) / kArcPiece)));
       for (int k = 0; k <= pieces; ++k) {
         const double angle = from + (to - from) * k / pieces;
         nodes.push_back({view.page(center + radius * (std::cos(angle) * u + std::sin(angle) * across)),
-                         kRope * stage.layout.weight, stage.colours.spring});
+                         kRope * stage.layout.weight, color});
       }
     };
     arc(one, joint.offset_a, turn, kRound - turn), arc(other, joint.offset_b, -turn, turn);
@@ -394,11 +395,11 @@ void draw_belts(const Stage& stage, const View& view, const sim::Snapshot& now, 
 void draw_pulleys(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   draw_belts(stage, view, now, list);
   const double weight = stage.layout.weight;
-  const Color color = stage.colours.spring;
   std::vector<Node> nodes;
   for (std::size_t i = 0; i < now.joints.size(); ++i) {
     const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
     if (joint_look(joint.kind).plane != JointMark::pulley || now.joints[i].broken) continue;
+    const Color color = color_of_joint(stage, i);
     nodes.clear();
     for (const Vec3& at : rope_way(stage.cast, i, now))
       nodes.push_back({view.page(at), kRope * weight, color});

@@ -8,6 +8,7 @@
 #include "draw/plane/springs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -36,7 +37,7 @@ bool holds_solid(const Stage& stage, const sim::SceneInfo::Spring& spring) {
 }
 
 Color color_of_spring(const Stage& stage, std::size_t i) {
-  return link_color(stage.look, stage.colours, stage.cast.springs[i].a, stage.cast.springs[i].b);
+  return link_color(stage.look, stage.colours, std::array{stage.cast.springs[i].a, stage.cast.springs[i].b});
 }
 
 }  // namespace

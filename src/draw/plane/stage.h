@@ -102,6 +102,7 @@ void draw_arrows(const std::vector<Arrow>& arrows, const std::vector<Color>& ink
 /// A force where two touch: all that one gives to the other, at their centre of pressure.
 struct Push {
   sim::Vec3 point, force;
+  bool quiet = false;  // others are to be looked at
 };
 
 /// The forces of contacts that the look asks for.

@@ -212,12 +212,14 @@ void draw_space_arrows(SpaceFrame& s) {
     offer(s.lens.page(tail), s.lens.page(tip), s.lens.window, weight, arrows);
     if (arrows.size() > before) arrows.back().hang = Hang{tail, tip};
   };
-  for (const Push& push : pushes(stage.cast, stage.look, s.now))
-    arrow(push.point, push.point + stage.force_scale * push.force);
-  draw_arrows(arrows, weight, stage.colours.room, stage.colours.force, s.list);
-  s.list.of({Subject::What::layer, 3});
-  arrows.clear();
   std::vector<Color> inks;
+  for (const Push& push : pushes(stage.cast, stage.look, s.now)) {
+    arrow(push.point, push.point + stage.force_scale * push.force);
+    inks.resize(arrows.size(), push.quiet ? stage.colours.quiet : stage.colours.force);
+  }
+  draw_arrows(arrows, inks, weight, stage.colours.room, s.list);
+  s.list.of({Subject::What::layer, 3});
+  arrows.clear(), inks.clear();
   for (std::size_t i = 0; i < stage.look.bodies.size() && i < s.now.bodies.size(); ++i) {
     if (!stage.look.bodies[i].velocity) continue;
     const sim::Snapshot::Body& body = s.now.bodies[i];

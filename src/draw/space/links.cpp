@@ -3,6 +3,7 @@
 // with e rising from 0 over the first part of a turn, so that its leads run on the axis.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -91,7 +92,9 @@ void add_links(SpaceFrame& s) {
   for (const Piece& piece : s.stage.pieces)
     least[std::size_t(piece.body)] = std::min(least[std::size_t(piece.body)], piece.least);
   const auto slender = [&](int body) { return body < 0 ? 1e300 : least[std::size_t(body)]; };
-  const auto between = [&](int a, int b) { return link_color(s.stage.look, s.stage.colours, a, b); };
+  const auto between = [&](int a, int b) {
+    return link_color(s.stage.look, s.stage.colours, std::array{a, b});
+  };
   const auto knob = [&](int body, const Vec3& at, double radius, Color own) {
     if (body < 0 || cast.bodies[body].turns) add_ball(s, at, radius * weight * metre, own, number);
   };
@@ -116,10 +119,11 @@ void add_links(SpaceFrame& s) {
         std::vector<Vec3> way = rope_way(cast, i, s.now);
         way.erase(std::unique(way.begin(), way.end()), way.end());
         const double radius = 0.5 * kRope * weight * metre;
-        add_tube(s, way, radius, color, number);
+        const Color own = joint_color(s.stage.look, s.stage.colours, cast, i);
+        add_tube(s, way, radius, own, number);
         for (std::size_t k = 1; k < way.size(); ++k) s.rods.push_back({way[k - 1], way[k], radius});
         for (const sim::SceneInfo::Joint::Place& it : joint.places)
-          knob(it.body, place_of(s.now, it), it.body < 0 ? kPin : kJoint, color);
+          knob(it.body, place_of(s.now, it), it.body < 0 ? kPin : kJoint, own);
         break;
       }
       case JointMark::line:
@@ -179,7 +183,8 @@ void add_links(SpaceFrame& s) {
   }
   for (const Arm& arm : arms(cast, s.now, kArmBeyond * weight * metre)) {
     const double radius = 0.5 * kRod * weight * metre;
-    add_tube(s, {arm.from, arm.to}, radius, color, number++);
+    add_tube(s, {arm.from, arm.to}, radius,
+             joint_color(s.stage.look, s.stage.colours, cast, std::size_t(arm.joint)), number++);
     s.rods.push_back({arm.from, arm.to, radius});
   }
 }
