@@ -208,11 +208,11 @@ Orientation<2> PlaneIterative::begun_turn(int body) const { return Orientation<D
 void PlaneIterative::warm_start(StepPart<D> part) {
   constants_ = {part.h, 0.05 * restitution_threshold_,
                 part.h * std::sqrt(model_.gravity.squaredNorm()) + driven_gain_, allowed_overlap(part.state)};
-  warm_start_.begin(moving_);
+  if (part.substep == 0) warm_start_.begin(moving_);
   deep_ = plane::warm_start(batches_.data(), int(batches_.size()), poses_.data(), old_.data(), moving_.data(),
                             constants_, slow_, fast_);
   moderate_warm_start();
-  moderate_warm_start();
+  if (part.substep == 0) moderate_warm_start();
 }
 
 void PlaneIterative::moderate_warm_start() {
@@ -220,7 +220,10 @@ void PlaneIterative::moderate_warm_start() {
   const int room = int(turns_.size());
   const auto each_pair = [&](auto&& act) {
     for (const Pair& pair : pairs_.all()) {
-      if (pair.slot >= 0) act(pair.a, pair.b >= 0 ? pair.b : room);
+      if (pair.slot < 0) continue;
+      const ContactBatch& g = batches_[pair.slot / kLanes];
+      const int lane = pair.slot % kLanes;
+      if (g.p[0][lane] > 0 || g.p[1][lane] > 0) act(pair.a, pair.b >= 0 ? pair.b : room);
     }
   };
   if (!warm_start_.moderate(

@@ -111,7 +111,9 @@ void SpaceIterative::add_impulses(State<D>& state) const {
 
 // the impacts decide which contacts the forces of the last step push
 void SpaceIterative::start_contacts(StepPart<D> part) {
+  if (part.substep == 0) warm_start_.begin(moving_);
   warm_start_contacts(part.state, part.h);
+  if (part.substep == 0) moderate_warm_start();
   batches_.build(touches_, all_, moving_);
   // what hangs together is struck together
   components_.assign(joints_.components(), 0);
@@ -351,7 +353,6 @@ void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
   static const BodyMotion<D> room;
   const int n = int(model_.bodies.size());
   closing_.assign(n + 1, 0), all_.clear();
-  warm_start_.begin(moving_);
   auto known = state.contacts.begin();
   for (int i = 0; i < int(touches_.size()); ++i) {
     ContactConstraint& touch = touches_[i];
@@ -383,13 +384,14 @@ void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
     if (size > most) touch.tangent_impulse *= most / size;
     push(touch, touch.normal_impulse * touch.n + touch.tangent_impulse);
   }
-  moderate_warm_start();
 }
 
 void SpaceIterative::moderate_warm_start() {
   if (!warm_start_.gave(moving_, bounding_radius_)) return;
   const auto each_pair = [&](auto&& act) {
-    for (const ContactConstraint& touch : touches_) act(touch.a, touch.b);
+    for (const ContactConstraint& touch : touches_) {
+      if (touch.normal_impulse > 0) act(touch.a, touch.b);
+    }
   };
   if (!warm_start_.moderate(
           moving_, each_pair, [&](int body) { return shares_forces(body); },

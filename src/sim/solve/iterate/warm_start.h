@@ -11,10 +11,10 @@
 
 namespace obscura::sim {
 
-/// Iterations begin with the forces of the last substep. Those of a blow are far too large for a longer
-/// substep, and few iterations would not take them back: a heap that has just landed would be thrown up.
-/// Contacts never give energy, so an island to which forces times h would give some begins with a share s of
-/// them,
+/// Iterations begin with the forces of the last substep. Those of a blow are far too large for the first
+/// substep of a step with fewer, and few iterations would not take them back: a heap that has just landed
+/// would be thrown up. Contacts never give energy, so an island to which forces times h would give some
+/// begins with a share s of them,
 ///   E(s) - E(0) = s v . M dv + s^2 dv . M dv / 2        dv  what they change of the velocities v
 /// that with the least E(s): 0 <= s < 1/2. Islands with joints, belts or moved bodies are left out: what
 /// joints answer is not in dv, and moved bodies may give energy.
