@@ -18,9 +18,19 @@ constexpr int kTile = 16;       // px, of the layers
 
 constexpr GLsizei kCorners = 4;  // of a quad, as a triangle strip
 
+// Brings the sides of a level line to whole pixels, `scale` px a page unit; false: it is between two.
+bool bring_to_pixels(std::vector<draw::Node>& line, double scale) {
+  const double middle = line[0].at.y(), half = line[0].width / 2;
+  const double top = std::round((middle - half) * scale), bottom = std::round((middle + half) * scale);
+  for (draw::Node& node : line)
+    node.at.y() = (top + bottom) / (2 * scale), node.width = (bottom - top) / scale;
+  return top < bottom;
+}
+
 // a straight stroke of one width and colour without round ends: as a box it takes half the time
 std::optional<draw::Box> as_bar(const draw::List& list, const draw::Stroke& stroke) {
-  if (stroke.end - stroke.begin != 2 || stroke.cap != draw::Cap::butt || stroke.blend != draw::Blend::over)
+  if (stroke.whole || stroke.end - stroke.begin != 2 || stroke.cap != draw::Cap::butt ||
+      stroke.blend != draw::Blend::over)
     return {};
   const draw::Node &a = list.nodes[std::size_t(stroke.begin)], &b = list.nodes[std::size_t(stroke.begin) + 1];
   const draw::Point way = b.at - a.at;
@@ -263,7 +273,12 @@ void Painter::lay_boxes() {
 }
 
 void Painter::add(const draw::List& list, const draw::Stroke& stroke, Damage& damage) {
-  const std::span nodes(list.nodes.data() + stroke.begin, std::size_t(stroke.end - stroke.begin));
+  std::span nodes(list.nodes.data() + stroke.begin, std::size_t(stroke.end - stroke.begin));
+  if (stroke.whole) {
+    row_.assign(nodes.begin(), nodes.end());
+    if (!bring_to_pixels(row_, scale_)) return;
+    nodes = row_;
+  }
   const std::size_t vertices = strip_.vertices.size(), first = strip_.indices.size();
   const Bounds seen = add_stroke(nodes, stroke, scale_, strip_) & clip_;
   if (!any(seen)) {

@@ -101,6 +101,7 @@ class Painter {
   std::vector<Layered> layered_;  // of the batch at hand
   std::vector<int> layers_;       // boxes that lie on each other, by tile
   Strip strip_;
+  std::vector<draw::Node> row_;  // at hand, on whole pixels
   std::vector<Polygon> polygons_;
   std::vector<Edge> edges_, outline_;  // of all polygons, band by band; of the one at hand
   std::vector<Quadrangle> quadrangles_;

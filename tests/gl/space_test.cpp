@@ -373,6 +373,63 @@ TEST(Space, OnADarkGroundAShadowIsSeenFromTheLastRow) {
   EXPECT_GT(brightness(dark), 8) << "not black";
 }
 
+/// The dark ground from a slant, its grid's lines 100 m apart if there shall be none.
+Made bare_ground(bool lines) {
+  Made made;
+  made.look.theme = draw::Theme::screen;
+  if (!lines) made.look.tile = 100;
+  draw::CameraKey key;
+  key.center = Vec3(50.3, 0, 50.2), key.width = 4;
+  made.cameras[0].keys = {key};
+  return made;
+}
+
+// Its rows meet at parts of pixels in most of these sizes, and would leave a darker line there.
+TEST(Space, ThePoolOfLightHasNoSeams) {
+  const Made made = bare_ground(false);
+  for (const auto& [width, height] :
+       {std::pair(1280, 720), {2560, 1440}, {1366, 768}, {1920, 1080}, {427, 240}}) {
+    Renderer renderer(width, height);
+    const media::Image image = drawn(renderer, made.picture(double(width) / height));
+    for (const double part : {0.2, 0.36, 0.5, 0.71}) {
+      const int x = int(part * width);
+      const auto level = [&](int y) { return int(image.row(y)[4 * x + 1]); };
+      int peak = 0;
+      for (int y = 0; y < height; ++y)
+        if (level(y) > level(peak)) peak = y;
+      EXPECT_GT(level(peak), level(0) + 8);
+      for (int y = 1; y < height; ++y) {
+        const int rise = (level(y) - level(y - 1)) * (y <= peak ? 1 : -1);
+        EXPECT_GE(rise, -1) << width << " x " << height << " at " << x << ", " << y;
+      }
+      for (int y = 1; y + 1 < height; ++y)
+        EXPECT_GE(level(y) + 1, std::min(level(y - 1), level(y + 1))) << width << " x " << height;
+    }
+  }
+}
+
+TEST(Space, TheGridIsAsClearInThePoolOfLightAsOutside) {
+  const Made made = bare_ground(true), bare = bare_ground(false);
+  for (const int height : {720, 1080}) {
+    Renderer renderer(height * 16 / 9, height);
+    const media::Image with = drawn(renderer, made.picture()), without = drawn(renderer, bare.picture());
+    const draw::CameraProjection lens = made.depictor().lens(made.now);
+    // how much brighter a line along x is than the ground, summed across it: in steps between two other lines
+    const auto clear = [&](double x) {
+      const Point p = lens.page({x, 0, 50}) * height / 1080;
+      double sum = 0;
+      for (int y = int(p.y()) - 4; y <= int(p.y()) + 4; ++y)
+        sum += with.row(y)[4 * int(p.x()) + 1] - without.row(y)[4 * int(p.x()) + 1];
+      return sum;
+    };
+    // outside it is 49 levels over the ground, 1.5 page units wide; a tenth for the levels' own steps
+    for (double x = 49.25; x < 51.3; x += 0.05) {
+      if (std::abs(x / 0.5 - std::round(x / 0.5)) < 0.2) continue;  // near a line across
+      EXPECT_GT(clear(x), 0.9 * 49 * 1.5 * height / 1080) << height << ": " << x;
+    }
+  }
+}
+
 TEST(Space, TheSameBytesTwiceAndFromBothBackEnds) {
   OBSCURA_NEEDS_BOTH_BACK_ENDS();
   Renderer osmesa(320, 180, {.backend = Backend::osmesa});

@@ -44,6 +44,11 @@ void List::add(const std::vector<Node>& line, Cap cap, Blend blend, bool closed,
   mark(Kind::stroke, int(strokes.size()));
 }
 
+void List::add_row(const std::vector<Node>& line) {
+  add(line, Cap::butt);
+  if (line.size() > 1) strokes.back().whole = true;
+}
+
 void List::add(const std::vector<Point>& outline, Color fill) {
   if (outline.size() < 3) return;
   const int begin = int(points.size());
@@ -130,6 +135,7 @@ void List::add(const List& list, double k, const Point& at) {
           Winding winding = stroke.winding;
           winding.lead *= k, winding.amplitude *= k;
           add(line, stroke.cap, stroke.blend, stroke.closed, winding);
+          strokes.back().whole = stroke.whole;
           break;
         }
         case Kind::polygon: {

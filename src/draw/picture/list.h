@@ -73,6 +73,8 @@ struct Stroke {
   Cap cap = Cap::round;
   Blend blend = Blend::over;
   Winding winding{};
+  // a level line whose sides are brought to whole pixels: two that touch share none
+  bool whole = false;
   bool operator==(const Stroke&) const = default;
 };
 
@@ -210,6 +212,8 @@ struct List {
   /// A stroke through `line`.
   void add(const std::vector<Node>& line, Cap cap = Cap::round, Blend blend = Blend::over,
            bool closed = false, const Winding& winding = {});
+  /// A level stroke, its sides on whole pixels.
+  void add_row(const std::vector<Node>& line);
   /// A filled polygon.
   void add(const std::vector<Point>& outline, Color fill);
   /// Clips everything that is added after this call to `rect`, until the next call of clip or unclip.

@@ -1,6 +1,8 @@
 // The ground and the room in space. The grid's lines lie at multiples of a tile from the origin and fade with
 // the distance r from the foot of what is looked at, as 1 - smoothstep(r / W); in a room they end at its
-// walls.
+// walls. On the dark theme a pool of light of the strength a lies over them:
+//   line  c = g + (k - g) / (1 - a)     g  ground, k  ink of the lines, all of them colours
+// so that (1 - a) (c - g), by which a line is brighter than what lies beside it, is the same everywhere.
 
 #include <algorithm>
 #include <cmath>
@@ -30,6 +32,25 @@ Color faded(Color c, double alpha) {
 double smooth(double u) {
   u = std::clamp(u, 0.0, 1.0);
   return u * u * (3 - 2 * u);
+}
+
+/// The place on the ground under what is looked at.
+Vec3 foot_of(const Ground& ground, const CameraProjection& lens) {
+  return lens.target - ground.normal * (lens.target - ground.point).dot(ground.normal);
+}
+
+/// How strong (0 to 1) the pool of light is at this distance (m) from the foot of what is looked at.
+double pool(const CameraProjection& lens, double distance) {
+  return 1 - smooth(distance * lens.scale / (kPool * lens.window.width));
+}
+
+/// The colour of a line that stands off the pool of light over it as it does off the ground elsewhere.
+Color under_pool(Color ink, Color ground, double strength) {
+  const double a = strength * kPoolInk.a / 255, k = 1 / (1 - a);
+  const auto part = [&](int i, int g) {
+    return std::uint8_t(std::clamp(std::lround(g + k * (i - g)), 0L, 255L));
+  };
+  return {part(ink.r, ground.r), part(ink.g, ground.g), part(ink.b, ground.b), ink.a};
 }
 
 /// 1, 2 or 5 times a power of ten, not smaller than `least`.
@@ -95,7 +116,7 @@ void draw_grid(const SpaceStage& stage, const CameraProjection& lens, List& list
   const bool bounded = stage.closed && stage.ground_face >= 0;
 
   // the foot of what is looked at, and how far around it lines are drawn
-  const Vec3 foot = lens.target - ground.normal * (lens.target - ground.point).dot(ground.normal);
+  const Vec3 foot = foot_of(ground, lens);
   const double x = (foot - axis.origin).dot(axis.u), y = (foot - axis.origin).dot(axis.v);
   double radius = kTo * shown;
   std::vector<Vec3> loop;
@@ -105,8 +126,9 @@ void draw_grid(const SpaceStage& stage, const CameraProjection& lens, List& list
     for (const Vec3& v : loop) radius = std::max(radius, (v - foot).norm());
   }
   const auto last = std::int64_t(std::min(std::ceil(radius / tile), 400.0));
-  const Color ink = stage.look.theme == Theme::paper ? Color{0xC6, 0xCB, 0xD1} : Color{0x50, 0x5D, 0x6A};
-  const Blend blend = stage.look.theme == Theme::paper ? Blend::darken : Blend::lighten;
+  const bool dark = stage.look.theme == Theme::screen;
+  const Color ink = dark ? Color{0x50, 0x5D, 0x6A} : Color{0xC6, 0xCB, 0xD1};
+  const Blend blend = dark ? Blend::lighten : Blend::darken;
   std::vector<Node> line;
   for (int way = 0; way < 2; ++way) {
     const Vec3 &along = way ? axis.v : axis.u, &across = way ? axis.u : axis.v;
@@ -129,9 +151,10 @@ void draw_grid(const SpaceStage& stage, const CameraProjection& lens, List& list
           line.clear();
           continue;
         }
-        const double r = std::hypot(off, t) / shown;
-        const double strength = bounded ? 1 : 1 - smooth((r - kFrom) / (kTo - kFrom));
-        line.push_back({lens.page(place), kGridLine * weight, faded(ink, strength)});
+        const double r = std::hypot(off, t);
+        const double strength = bounded ? 1 : 1 - smooth((r / shown - kFrom) / (kTo - kFrom));
+        const Color own = dark ? under_pool(ink, stage.colours.ground, pool(lens, r)) : ink;
+        line.push_back({lens.page(place), kGridLine * weight, faded(own, strength)});
       }
       list.add(line, Cap::butt, blend);
     }
@@ -140,32 +163,33 @@ void draw_grid(const SpaceStage& stage, const CameraProjection& lens, List& list
 
 /// A pool of light around what is looked at, on the dark theme: rows of the page, each of one height, as
 /// strong as 1 - smoothstep(r / R) where its line of sight meets the ground at the distance r from the foot.
+/// Where it is nothing a row ends.
 void draw_pool(const SpaceStage& stage, const CameraProjection& lens, List& list) {
   if (stage.look.theme != Theme::screen) return;
   const Ground& ground = *stage.ground;
-  const Vec3 foot = lens.target - ground.normal * (lens.target - ground.point).dot(ground.normal);
-  const double radius = kPool * lens.window.width / lens.scale;
+  const Vec3 foot = foot_of(ground, lens);
   const auto strength = [&](const Point& page) {
     Vec3 from;
     const Vec3 way = lens.ray(page, from);
     const double fall = way.dot(ground.normal);
     if (!(fall < -1e-6)) return 0.0;
     const Vec3 place = from - way * ((from - ground.point).dot(ground.normal) / fall);
-    return 1 - smooth((place - foot).norm() / radius);
+    return pool(lens, (place - foot).norm());
   };
   const Rect& w = lens.window;
   std::vector<Node> row;
   for (double y = w.y; y < w.y + w.height; y += kRow) {
-    const double high = std::min(kRow, w.y + w.height - y), middle = y + high / 2;
+    const double high = std::min(kRow, w.y + w.height - y);
     row.clear();
-    bool any = false;
+    std::size_t lit = 0;  // up to its last node with light, and the next
     for (int i = 0; i <= kColumns; ++i) {
-      const Point at(w.x + w.width * i / kColumns, middle);
-      const double s = strength(at);
-      any = any || s > 0;
-      row.push_back({at, high, faded(kPoolInk, s)});
+      const Point at(w.x + w.width * i / kColumns, y + high / 2);
+      row.push_back({at, high, faded(kPoolInk, strength(at))});
+      if (row.back().color.a > 0) lit = row.size() + 1;
+      if (lit == 0 && row.size() > 1) row.erase(row.begin());
     }
-    if (any) list.add(row, Cap::butt);
+    row.resize(std::min(lit, row.size()));
+    list.add_row(row);
   }
 }
 
@@ -217,8 +241,8 @@ void draw_space_still(const SpaceStage& stage, const std::vector<CameraProjectio
         stage.ground &&
         stage.ground->normal.dot(lens.perspective() ? Vec3(lens.eye() - stage.ground->point) : lens.back) > 0;
     if (above && stage.look.ground) {
-      draw_pool(stage, lens, list);
       draw_grid(stage, lens, list);
+      draw_pool(stage, lens, list);
     }
     draw_frame(stage, lens, true, list);
     list.of({});

@@ -49,7 +49,6 @@ export class Ground {
     this.dark = dark;
     /** @type {Map<number, {key: string, picture: HTMLCanvasElement}>} */
     this.grids = new Map();
-    this.lines = document.createElement("canvas");
   }
 
   /** The ground's grid, the room's hairlines behind all, and what darkens the ground under bodies. */
@@ -70,8 +69,8 @@ export class Ground {
       return;
     }
     if (above_ground(this.space.ground, lens) && this.space.ground.grid) {
-      if (this.dark) this.pool(context, lens, scale);
       this.grid(context, lens, scale, fitted, FEW);
+      if (this.dark) this.pool(context, lens, scale);
     }
     this.room(context, lens, scale, true);
   }
@@ -84,12 +83,8 @@ export class Ground {
     const picture = known?.picture ?? document.createElement("canvas"),
       c = this.clear(picture, like, lens, scale);
     if (above_ground(this.space.ground, lens) && this.space.ground.grid) {
+      this.grid(c, lens, scale, fitted, PIECES);
       if (this.dark) this.pool(c, lens, scale);
-      // lines on the page's colour, for the darker or the lighter of two
-      this.grid(this.clear(this.lines, like, lens, scale), lens, scale, fitted, PIECES);
-      c.globalCompositeOperation = this.dark ? "lighten" : "darken";
-      c.drawImage(this.lines, 0, 0);
-      c.globalCompositeOperation = "source-over";
     }
     this.room(c, lens, scale, true);
     this.grids.set(i, { key, picture });
@@ -106,7 +101,7 @@ export class Ground {
     return c;
   }
 
-  /** A pool of light around what is looked at, on the dark theme. */
+  /** A pool of light around what is looked at, on the dark theme, over the grid. */
   pool(c, lens, scale) {
     const { normal, point } = this.space.ground,
       [left, top, width, height] = lens.window;
@@ -121,8 +116,8 @@ export class Ground {
       const fall = dot(way, normal);
       if (!(fall < -1e-6)) continue;
       const at = plus(from, way, -dot(sub(from, point), normal) / fall),
-        q = clamp(Math.hypot(...sub(at, foot)) / radius, 0, 1);
-      image.data.set([POOL_INK[0], POOL_INK[1], POOL_INK[2], Math.round(POOL_INK[3] * (1 - q * q * (3 - 2 * q)))], 4 * k);
+        strength = 1 - smooth(Math.hypot(...sub(at, foot)) / radius);
+      image.data.set([POOL_INK[0], POOL_INK[1], POOL_INK[2], Math.round(POOL_INK[3] * strength)], 4 * k);
     }
     const small = document.createElement("canvas");
     small.width = columns;
@@ -131,6 +126,12 @@ export class Ground {
     clip_to_panel(c, lens, scale);
     c.drawImage(small, left - step / 2, top, columns * step, rows * POOL_ROW);
     c.restore();
+  }
+
+  /** The colour of a line that stands off the pool of light over it as it does off the ground elsewhere. */
+  under_pool(ink, strength) {
+    const k = 1 / (1 - (strength * POOL_INK[3]) / 255);
+    return this.color.map((g, i) => Math.round(clamp(g + k * (ink[i] - g), 0, 255)));
   }
 
   /** Lines on the ground, each in so many pieces of one strength. */
@@ -177,11 +178,15 @@ export class Ground {
             before = null;
             continue;
           }
-          const r = (Math.hypot(off, t) / shown - FROM) / (TO - FROM),
-            q = clamp(r, 0, 1);
-          const now = { p: lens.page(at), s: loop.length ? 1 : 1 - q * q * (3 - 2 * q) };
+          const r = Math.hypot(off, t) / shown;
+          const now = {
+            p: lens.page(at),
+            s: loop.length ? 1 : 1 - smooth((r - FROM) / (TO - FROM)),
+            pool: this.dark ? 1 - smooth(r / POOL) : 0,
+          };
           if (before && before.s + now.s > 0.01) {
-            c.strokeStyle = `rgba(${ink.join(",")},${(before.s + now.s) / 2})`;
+            const own = this.under_pool(ink, (before.pool + now.pool) / 2);
+            c.strokeStyle = `rgba(${own.join(",")},${(before.s + now.s) / 2})`;
             c.beginPath();
             c.moveTo(before.p[0], before.p[1]);
             c.lineTo(now.p[0], now.p[1]);
@@ -225,6 +230,12 @@ export class Ground {
     }
     c.restore();
   }
+}
+
+/** From 0 to 1 with level ends. */
+function smooth(u) {
+  const q = clamp(u, 0, 1);
+  return q * q * (3 - 2 * q);
 }
 
 /** 1, 2 or 5 times a power of ten, not smaller. */
