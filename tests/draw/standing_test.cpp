@@ -48,6 +48,31 @@ double outside_of(const Solids& solids, const Solids::Shade& shade, const Point&
   return far;
 }
 
+/// A line that goes behind a body is cut 0.4 page units within its outline (sight.cpp), its round end
+/// included: else it would be a speck in the face there.
+TEST(Standing, ALineThatGoesBehindDoesNotReachIntoTheFace) {
+  Made made = standing(0.2);
+  made.body(sim::ShapeKind::box, {0, 0.4, -0.6}, 0.1);
+  made.cast.bodies[1].half = {0.1, 0.3, 0.2};
+  for (const int i : {0, 1}) made.look.bodies[std::size_t(i)].color = color(i ? "blue" : "orange");
+  made.camera = side();
+  made.camera.elevation = 0, made.camera.projection = Camera::Projection::orthographic;
+  const Picture picture = made.picture();
+  const Color behind = edge(*color("blue"), made.look.theme);
+  const double top = made.depictor().lens(made.now).page({0, 0.4, 0.2}).y();
+  int cut = 0;
+  for (const Stroke& stroke : picture.moving.strokes) {
+    const Node& first = picture.moving.nodes[std::size_t(stroke.begin)];
+    if (first.color != behind || stroke.closed) continue;
+    for (int i = stroke.begin; i < stroke.end; ++i) {
+      const Node& node = picture.moving.nodes[std::size_t(i)];
+      EXPECT_LT(node.at.y() + node.width / 2, top + 0.41);
+      cut += node.at.y() > top - 3;
+    }
+  }
+  EXPECT_GE(cut, 1) << "the line at its side";
+}
+
 /// Ring i reaches to 0.28 m (1.4 of half the thickness) times ((i + 1) / 32)^1.6 from the foot, each around
 /// the one before: nothing is noise.
 TEST(Standing, TheGroundIsDarkerTheNearerItIsToWhatStandsOnIt) {

@@ -373,6 +373,73 @@ TEST(Space, OnADarkGroundAShadowIsSeenFromTheLastRow) {
   EXPECT_GT(brightness(dark), 8) << "not black";
 }
 
+/// Pixels that differ from all around them, which are alike: a level of rounding and the steps of a shade
+/// less.
+int specks(const media::Image& image) {
+  int found = 0;
+  const auto level = [&](int x, int y) { return int(image.row(y)[4 * x + 1]); };
+  for (int y = 1; y + 1 < image.height; ++y)
+    for (int x = 1; x + 1 < image.width; ++x) {
+      int low = 255, high = 0;
+      for (int k = 0; k < 9; ++k) {
+        if (k == 4) continue;
+        low = std::min(low, level(x + k % 3 - 1, y + k / 3 - 1));
+        high = std::max(high, level(x + k % 3 - 1, y + k / 3 - 1));
+      }
+      found += high - low <= 4 && (level(x, y) < low - 4 || level(x, y) > high + 4);
+    }
+  return found;
+}
+
+// Near the rod its triangles are cut into pieces for the darkness there. Cut unlike, they would leave specks
+// of the white ground between them.
+TEST(Space, AFlatFaceHasNoSpecks) {
+  Made made;
+  made.cast.walls.clear(), made.look.ground = false;
+  const int disc = made.body(sim::ShapeKind::hull, {0, 0.5, 0}, Vec3::Zero(), 0, "orange");
+  sim::SceneInfo::Body& form = made.cast.bodies[std::size_t(disc)];
+  form.faces.assign(2, {});
+  constexpr int kSides = 24;
+  for (int i = 0; i < kSides; ++i) {
+    const double turn = 2 * M_PI * i / kSides;
+    form.vertices.emplace_back(1.2 * std::cos(turn), 0, -1.2 * std::sin(turn));
+    form.faces[0].push_back(i), form.faces[1].push_back(2 * kSides - 1 - i);
+    form.faces.push_back({i, kSides + i, kSides + (i + 1) % kSides, (i + 1) % kSides});
+  }
+  for (int i = 0; i < kSides; ++i) form.vertices.push_back(form.vertices[std::size_t(i)] - Vec3(0, 0.2, 0));
+  made.body(sim::ShapeKind::capsule, {0, 0.8, 0}, {0, 0.3, 0}, 0.2, "orange");
+  Renderer renderer(640, 360);
+  int found = 0;
+  for (int i = 0; i < 48; ++i) {
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.137 * i, Vec3(1, 8, 0.5).normalized()));
+    made.now.bodies[0].orientation = made.now.bodies[1].orientation = turn;
+    made.now.bodies[1].position = made.now.bodies[0].position + turn * Vec3(0, 0.5, 0);
+    found += specks(drawn(renderer, made.picture()));
+  }
+  EXPECT_EQ(found, 0);
+}
+
+// Where two of its pieces lie side by side their edges are brought to other parts of a pixel, and the dark
+// face between them would be seen there.
+TEST(Space, ABodyOfBoxesSideBySideHasNoSpecks) {
+  Made made;
+  made.cast.walls.clear(), made.look.ground = false;
+  made.body(sim::ShapeKind::compound, {0, 0.8, 0}, Vec3::Zero(), 0, "grey");
+  for (int i = 0; i < 6; ++i) {
+    sim::SceneInfo::Part part;
+    part.kind = sim::ShapeKind::box, part.half = {0.15, 0.75 - 0.1 * i, 0.6};
+    part.center = {0.3 * i - 0.75, part.half.y() - 0.75, 0};
+    made.cast.bodies[0].parts.push_back(part);
+  }
+  Renderer renderer(1280, 720);
+  int found = 0;
+  for (int i = 0; i < 12; ++i) {
+    made.now.bodies[0].orientation = Eigen::AngleAxisd(0.05 * i - 0.3, Vec3(0.3, 1, 0.2).normalized());
+    found += specks(drawn(renderer, made.picture()));
+  }
+  EXPECT_EQ(found, 0);
+}
+
 /// The dark ground from a slant, its grid's lines 100 m apart if there shall be none.
 Made bare_ground(bool lines) {
   Made made;

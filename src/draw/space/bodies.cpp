@@ -21,6 +21,7 @@ constexpr double kFromAbove = 0.85;      // sine of the camera's elevation, from
 constexpr int kBracketNumber = 1 << 29;  // theirs in sight, above those of all others
 constexpr double kThinEdge = 0.11;       // of a body's thickness: an outline is not wider
 constexpr double kAround = 60;           // page units outside the window where things are still drawn
+constexpr double kOver = 0.06;           // page units: how far faces of one plane lie over each other
 constexpr double kLeast = 1.6;           // radius of what is too small to see
 
 Vec3 placed(const sim::Snapshot::Body& body, const Vec3& local) {
@@ -54,22 +55,43 @@ Shaded surface(const SpaceFrame& s, Color own, const Vec3& place, const Vec3& no
                : shade(own, s.stage.look.theme, s.stage.light, normal);
 }
 
-/// The faces of a polyhedron that look at the eye; `turn` takes `normals`, those of a round surface, to the
-/// world.
+/// The corners of a face. Where another piece of the body continues it, it reaches a little over that, and
+/// what it hides there ends a little before: the rasteriser brings corners to parts of a pixel, and a sample
+/// between the edges of two pieces would show what is behind.
+std::vector<Vec3> corners_of(const SpaceFrame& s, const Polyhedron& body, const Polyhedron::Face& face,
+                             const std::vector<std::int8_t>* goes_on) {
+  std::vector<Vec3> places;
+  for (const int v : face.loop) places.push_back(body.vertices[std::size_t(v)]);
+  if (!goes_on) return places;
+  const std::size_t count = places.size();
+  const std::vector<Vec3> own = places;
+  for (std::size_t i = 0; i < count; ++i) {
+    if ((*goes_on)[i] == 0) continue;
+    const Vec3 out = (own[(i + 1) % count] - own[i]).normalized().cross(face.normal);
+    for (const std::size_t k : {i, (i + 1) % count}) {
+      if (s.lens.depth(own[k]) < 0.05) continue;
+      const double facing = std::max(face.normal.dot(s.lens.sight(own[k])), 0.25);
+      places[k] += (*goes_on)[i] * kOver / (facing * s.lens.scale_at(own[k])) * out;
+    }
+  }
+  return places;
+}
+
+/// The faces of a polyhedron that look at the eye, see Piece; `turn` takes `normals` to the world.
 void add_faces(SpaceFrame& s, const Polyhedron& body, Color own,
                const std::vector<std::vector<Vec3>>& normals = {},
-               const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity()) {
+               const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity(),
+               const std::vector<std::vector<std::int8_t>>& goes_on = {}) {
   for (std::size_t f = 0; f < body.faces.size(); ++f) {
     const Polyhedron::Face& face = body.faces[f];
     const Vec3& place = body.vertices[face.loop[0]];
     if (face.normal.dot(s.lens.perspective() ? Vec3(s.lens.eye() - place) : s.lens.back) <= 0) continue;
     const auto first = std::uint32_t(s.corners.size());
-    for (std::size_t i = 0; i < face.loop.size(); ++i) {
-      const Vec3& at = body.vertices[face.loop[i]];
-      corner(s, at, face.normal,
-             surface(s, own, at, normals.empty() ? face.normal : Vec3(turn * normals[f][i])));
-    }
-    for (std::uint32_t i = 2; i < face.loop.size(); ++i)
+    const std::vector<Vec3> places = corners_of(s, body, face, goes_on.empty() ? nullptr : &goes_on[f]);
+    for (std::size_t i = 0; i < places.size(); ++i)
+      corner(s, places[i], face.normal,
+             surface(s, own, places[i], normals.empty() ? face.normal : Vec3(turn * normals[f][i])));
+    for (std::uint32_t i = 2; i < places.size(); ++i)
       for (std::uint32_t k : {first, first + i - 1, first + i}) s.triangles.push_back(k);
   }
 }
@@ -227,7 +249,7 @@ void add_bodies(SpaceFrame& s) {
         for (const Vec3& v : s.placed[i].vertices) middle += v / double(s.placed[i].vertices.size());
         begin(s, middle, piece.reach, i);
         if (in_window(s.lens, middle, piece.reach)) {
-          add_faces(s, s.placed[i], own, piece.normals, turn);
+          add_faces(s, s.placed[i], own, piece.normals, turn, piece.goes_on);
           s.sight.add(s.placed[i], i, piece.body);
         }
         end(s);
@@ -274,7 +296,7 @@ void trace(SpaceFrame& s, const std::vector<Vec3>& way, bool closed, int own, in
   const std::size_t count = closed ? way.size() : way.size() - 1;
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3 &a = way[i], &b = way[(i + 1) % way.size()];
-    s.sight.seen(a, b, own, too, parts, faces);
+    s.sight.seen(a, b, own, too, parts, faces, width / 2);
     if (parts.size() != 1 || parts[0].first > 0 || parts[0].second < 1) whole = false;
     if (parts.empty()) {
       flush();

@@ -1,4 +1,7 @@
-// Triangles are small enough, where others are near, for their colours to be even between their corners.
+// Triangles are small enough, where others are near, for their colours to be even between their corners. All
+// of a face are cut alike, and of a round surface all faces, and the places on an edge are the same to the
+// bit from both its sides: where they were not, a sample of a pixel could lie on neither, and show what is
+// behind.
 
 #include "draw/space/darkness.h"
 
@@ -48,6 +51,13 @@ Occlusion around(const SpaceFrame& s) {
   return Occlusion(std::move(bodies), s.stage.look.ground ? s.stage.ground : std::nullopt);
 }
 
+// a place on the way from a to b, the same from b to a
+Vec3 between(const Vec3& a, const Vec3& b, int i, int n) {
+  const bool forth = std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  const Vec3 &from = forth ? a : b, &to = forth ? b : a;
+  return from + double(forth ? i : n - i) * (to - from) / n;
+}
+
 }  // namespace
 
 Darkness::Darkness(SpaceFrame& frame) : frame_(frame), occlusion_(around(frame)) {
@@ -74,42 +84,67 @@ int Darkness::pieces(int body, const std::array<Vec3, 3>& corners) const {
   return std::clamp(int(std::ceil(longest / cell)), 1, kMostPieces);
 }
 
+// the triangles of the face of the one at `k`
+void Darkness::cut(const Chunk& chunk, std::size_t k) {
+  const std::vector<std::uint32_t>& triangles = frame_.triangles;
+  const bool round = !frame_.stage.pieces[std::size_t(chunk.piece)].normals.empty();
+  cut_begin_ = round ? chunk.begin : k, cut_end_ = cut_begin_, cut_pieces_ = 0;
+  bool any = false;
+  while (cut_end_ < chunk.end && (round || triangles[cut_end_] == triangles[k])) {
+    const auto place = [&](std::size_t i) { return frame_.corners[triangles[cut_end_ + i]].place; };
+    const std::array<Vec3, 3> places{place(0), place(1), place(2)};
+    occlusion_.near(chunk.piece, places, frame_.corners[triangles[cut_end_]].normal, others_);
+    any = any || !others_.empty();
+    cut_pieces_ = std::max(cut_pieces_, pieces(chunk.piece, places));
+    cut_end_ += 3;
+  }
+  if (!any) cut_pieces_ = 0;
+}
+
 void Darkness::lay(const Chunk& chunk, std::size_t k, std::vector<std::uint32_t>& list) {
   const std::array<std::uint32_t, 3> at{frame_.triangles[k], frame_.triangles[k + 1],
                                         frame_.triangles[k + 2]};
   const int body = chunk.piece;
   const auto whole = [&] { list.insert(list.end(), at.begin(), at.end()); };
   if (body < 0 || body >= int(frame_.stage.pieces.size()) || occlusion_.near(body).empty()) return whole();
-  // a round surface has small triangles
+  // a round body has small triangles
   if (frame_.stage.pieces[std::size_t(body)].form != Piece::Form::polyhedron) {
     for (const std::uint32_t i : at)
       if (!std::exchange(darkened_[i], char(1))) darken(frame_.corners[i], body, occlusion_.near(body));
     return whole();
   }
+  if (k < cut_begin_ || k >= cut_end_) cut(chunk, k);
+  const int n = cut_pieces_;
+  if (n == 0) return whole();
   const std::array<Corner, 3> corners{frame_.corners[at[0]], frame_.corners[at[1]], frame_.corners[at[2]]};
   const std::array<Vec3, 3> places{corners[0].place, corners[1].place, corners[2].place};
   occlusion_.near(body, places, corners[0].normal, others_);
-  if (others_.empty()) return whole();
 
   // rows of pieces from the first corner to the edge of the other two
-  const int n = pieces(body, places);
   const auto same = [&](const Corner& c) {
     return c.color.lit == corners[0].color.lit && c.color.shaded == corners[0].color.shaded;
   };
   const bool even = same(corners[1]) && same(corners[2]);
+  const auto place = [&](int row, int i) {
+    if (row == n) return between(places[1], places[2], i, n);
+    if (i == 0) return between(places[0], places[1], row, n);
+    if (i == row) return between(places[0], places[2], row, n);
+    return Vec3(places[0] +
+                (double(row - i) * (places[1] - places[0]) + double(i) * (places[2] - places[0])) / n);
+  };
   const auto first = std::uint32_t(frame_.corners.size());
   for (int row = 0; row <= n; ++row)
     for (int i = 0; i <= row; ++i) {
       Corner corner = corners[0];
-      corner.place += (double(row - i) * (places[1] - places[0]) + double(i) * (places[2] - places[0])) / n;
+      corner.place = place(row, i);
       // of a round surface the colours differ
-      const auto between = [&](Color Shaded::*of) {
+      const auto mixed = [&](Color Shaded::*of) {
         if (even) return corners[0].color.*of;
         const double along = row > 0 ? double(i) / row : 0;
         return mix(corners[0].color.*of, mix(corners[1].color.*of, corners[2].color.*of, along),
                    double(row) / n);
       };
-      corner.color = {between(&Shaded::lit), between(&Shaded::shaded)};
+      corner.color = {mixed(&Shaded::lit), mixed(&Shaded::shaded)};
       darken(corner, body, others_);
       frame_.corners.push_back(corner);
     }

@@ -20,11 +20,14 @@ class Darkness {
  private:
   void darken(Corner& corner, int body, std::span<const int> others) const;
   int pieces(int body, const std::array<sim::Vec3, 3>& corners) const;
+  void cut(const Chunk& chunk, std::size_t k);
 
   SpaceFrame& frame_;
   Occlusion occlusion_;
   std::vector<char> darkened_;  // one a corner: it is as dark as it shall be
   std::vector<int> others_;
+  std::size_t cut_begin_ = 0, cut_end_ = 0;  // of the triangles at hand that are cut alike
+  int cut_pieces_ = 0;                       // of their edges; 0: none of them is cut
 };
 
 }  // namespace obscura::draw

@@ -9,6 +9,9 @@ namespace {
 
 using sim::Vec3;
 
+constexpr double kSameWay = 1 - 1e-10;  // cosine between faces of one plane
+constexpr double kTouching = 1e-6;      // of a side: so near are faces that touch
+
 /// Newell's normal of a loop: right for any flat polygon, and a mean for one that is not quite flat.
 Vec3 normal_of(const std::vector<Vec3>& vertices, const std::vector<int>& loop) {
   Vec3 sum = Vec3::Zero();
@@ -67,6 +70,32 @@ std::vector<std::vector<Vec3>> round_normals(const Polyhedron& body) {
       normals[f].push_back(sum.normalized());
     }
   return normals;
+}
+
+std::vector<std::vector<char>> continued(const Polyhedron& body, const Polyhedron& other) {
+  std::vector<std::vector<char>> found;
+  for (const Polyhedron::Face& face : body.faces) {
+    std::vector<char>& sides = found.emplace_back(face.loop.size(), 0);
+    for (const Polyhedron::Face& next : other.faces) {
+      if (face.normal.dot(next.normal) < kSameWay) continue;
+      for (std::size_t i = 0; i < face.loop.size(); ++i) {
+        const Vec3& a = body.vertices[std::size_t(face.loop[i])];
+        const Vec3 side = body.vertices[std::size_t(face.loop[(i + 1) % face.loop.size()])] - a;
+        const double length = side.norm(), least = kTouching * length;
+        const Vec3 along = side / length, out = along.cross(face.normal);
+        // how far the other face reaches along the side, and from it outwards
+        double from = 1e300, to = -1e300, near = 1e300, far = -1e300, off = 0;
+        for (const int v : next.loop) {
+          const Vec3 p = other.vertices[std::size_t(v)] - a;
+          from = std::min(from, p.dot(along)), to = std::max(to, p.dot(along));
+          near = std::min(near, p.dot(out)), far = std::max(far, p.dot(out));
+          off = std::max(off, std::abs(p.dot(face.normal)));
+        }
+        if (off < least && near < least && far > least && from < length - least && to > least) sides[i] = 1;
+      }
+    }
+  }
+  return found;
 }
 
 Polyhedron box(const Vec3& half) {

@@ -203,7 +203,7 @@ void HiddenLines::finish() {
 }
 
 void HiddenLines::seen(const Vec3& from, const Vec3& to, int own, int too, Parts& parts,
-                       std::span<const Vec3> faces) const {
+                       std::span<const Vec3> faces, double end) const {
   parts.clear();
   if (lens_.depth(from) < kSightNear || lens_.depth(to) < kSightNear) return;
   const Vec3 a = lens_.seen(from), b = lens_.seen(to), way = b - a;
@@ -244,7 +244,8 @@ void HiddenLines::seen(const Vec3& from, const Vec3& to, int own, int too, Parts
     const Piece& piece = pieces_[index];
     if (piece.number == own || piece.number == too) return;
     if (x1 < piece.x0 || x0 > piece.x1 || y1 < piece.y0 || y0 > piece.y1) return;
-    double low = 0, high = 1;
+    double low = 0, high = 1, before = 0, after = 0;
+    const double ahead = group >= 0 && piece.group == group ? 0 : end / std::max(length, 1e-9);
     const bool own_face = continues(piece);
     for (int i = piece.begin; i < piece.end; ++i) {
       const Eigen::Vector4d& p = planes_[i];
@@ -255,13 +256,12 @@ void HiddenLines::seen(const Vec3& from, const Vec3& to, int own, int too, Parts
       if (height >= 0 && height + rise >= 0) return;
       if (height < 0 && height + rise < 0) continue;
       const double t = height / -rise;
-      if (height < 0)
-        high = std::min(high, t);
-      else
-        low = std::max(low, t);
+      // an outline is a plane along the third axis
+      if (height < 0 && t < high) high = t, after = p.z() == 0 ? ahead : 0;
+      if (height >= 0 && t > low) low = t, before = p.z() == 0 ? ahead : 0;
       if (low >= high) return;
     }
-    hidden_.push_back({low, high});
+    hidden_.push_back({low - before, high + after});
   };
   const int c0 = std::clamp(int((x0 - w.x) / kCell), 0, columns_ - 1),
             c1 = std::clamp(int((x1 - w.x) / kCell), 0, columns_ - 1),

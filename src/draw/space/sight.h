@@ -31,9 +31,10 @@ class HiddenLines {
   /// The parts of the line from a to b (world) that no piece hides but those numbered `own` and `too`, each
   /// as its ends between 0 and 1 along the line's picture on the page. Empty too where a or b is behind the
   /// eye. `faces`: the normals of the faces of `own` that meet in the line: where another piece of its group
-  /// continues or covers one of them, the line is a seam up to that piece's very edge.
+  /// continues or covers one of them, the line is a seam up to that piece's very edge. `end`: so long (page
+  /// units) before the outline of another thing a part ends, for its round end not to reach into that.
   void seen(const sim::Vec3& a, const sim::Vec3& b, int own, int too, Parts& parts,
-            std::span<const sim::Vec3> faces = {}) const;
+            std::span<const sim::Vec3> faces = {}, double end = 0) const;
   /// Whether a place is seen.
   bool seen(const sim::Vec3& place, int own, int too = -1) const;
 

@@ -73,6 +73,34 @@ void add_pieces(int body, const Form& form, const Eigen::Matrix3d& turn, const V
   }
 }
 
+/// Piece::goes_on of the pieces of one body.
+void find_continued(std::span<Piece> pieces) {
+  for (Piece& piece : pieces)
+    for (const Piece& other : pieces) {
+      if (&other == &piece || piece.flat.empty() || other.flat.empty()) continue;
+      const auto found = continued(piece.flat, other.flat);
+      if (piece.goes_on.empty())
+        for (const Polyhedron::Face& face : piece.flat.faces) piece.goes_on.emplace_back(face.loop.size(), 0);
+      for (std::size_t f = 0; f < found.size(); ++f)
+        for (std::size_t i = 0; i < found[f].size(); ++i)
+          if (found[f][i]) piece.goes_on[f][i] = 1;
+    }
+  for (Piece& piece : pieces) {
+    if (piece.goes_on.empty()) continue;
+    for (const Polyhedron::Edge& e : piece.flat.edges) {
+      if (e.right < 0) continue;
+      const auto side = [&](int face, int from) -> std::int8_t& {
+        const std::vector<int>& loop = piece.flat.faces[std::size_t(face)].loop;
+        return piece.goes_on[std::size_t(face)][std::size_t(std::ranges::find(loop, from) - loop.begin())];
+      };
+      // the right one's loop runs from b to a
+      std::int8_t &left = side(e.left, e.a), &right = side(e.right, e.b);
+      if (left == 1 && right == 0) right = -1;
+      if (right == 1 && left == 0) left = -1;
+    }
+  }
+}
+
 /// The frame of a material's pattern, in units of half the thickness of a piece, of wood the geometric mean
 /// of its two lesser ones: a board's rings are no finer than a beam's; its first axis is the piece's longest.
 /// Of a box checks are as many along each side as fit.
@@ -227,6 +255,12 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
     piece.marked = look.axes && material == Material::matte && body.turns && !body.fixed &&
                    (body.kind == sim::ShapeKind::ball || body.kind == sim::ShapeKind::capsule);
     marked = marked || piece.marked;
+  }
+
+  // where pieces of a body lie in one plane side by side
+  for (std::size_t begin = 0, end = 0; begin < pieces.size(); begin = end) {
+    while (end < pieces.size() && pieces[end].body == pieces[begin].body) ++end;
+    find_continued(std::span(pieces).subspan(begin, end - begin));
   }
 
   // the page: caption, then a window for each camera

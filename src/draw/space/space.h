@@ -20,8 +20,11 @@ struct Piece {
   enum class Form { polyhedron, ball, capsule };
   Form form = Form::ball;
   int body = 0;
-  Polyhedron flat;                                      // of a polyhedron,
-  std::vector<std::vector<sim::Vec3>> normals;          // and round_normals of it
+  Polyhedron flat;                              // of a polyhedron,
+  std::vector<std::vector<sim::Vec3>> normals;  // and round_normals of it
+  // at each side of each face: 1 where another piece of the body continues it, -1 where a neighbour of it is
+  // continued and hides it
+  std::vector<std::vector<std::int8_t>> goes_on;
   sim::Vec3 a = sim::Vec3::Zero(), b = a;               // a ball's centre; the ends of a capsule's axis
   double radius = 0;                                    // m; 0: a point, drawn as a dot
   double reach = 0;                                     // from the body's centre, m
