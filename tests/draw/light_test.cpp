@@ -46,5 +46,23 @@ TEST(Light, TheSunIsStronger) {
   }
 }
 
+/// A shadow on a face that looks up, a little away from the light: a third darker on the screen, where that
+/// on the ground is dark, too, and a fifth on paper.
+TEST(Light, AShadowOnABodyIsAsDeepAsTheThemeAsks) {
+  const Light sun = light({-0.6, 1, 0.42});
+  const sim::Vec3 normal = sim::Vec3(0.25, 0.9, -0.35).normalized();
+  double screen = 0, paper = 0;
+  for (int color = 0; color < 6; ++color) {
+    const auto darker = [&](Theme theme) {
+      const Shaded face = shade(turn(color), theme, sun, normal);
+      const auto sum = [](Color c) { return c.r + c.g + c.b; };
+      return 1 - double(sum(face.shaded)) / sum(face.lit);
+    };
+    screen += darker(Theme::screen) / 6, paper += darker(Theme::paper) / 6;
+  }
+  EXPECT_NEAR(screen, 0.33, 0.03);
+  EXPECT_NEAR(paper, 0.2, 0.05);
+}
+
 }  // namespace
 }  // namespace obscura::draw

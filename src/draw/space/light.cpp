@@ -1,7 +1,7 @@
 // Light and shadow.
 //   lit     s = s0 + s1 (1 + n_y)/2 + s4 (1 + n . f)/2 + s2 max(0, n . l)     n  normal, l  to the light
 //   shaded  s = s0 + s1 (1 + n_y)/2 + s4 (1 + n . f)/2 + s3 max(0, n . l)     s3 < s2: round things stay
-//   round
+//   round; on the dark theme it is below 0: a shadow from which nothing is reflected
 // f is level and across the light: two upright faces at a right angle that both look away from the light
 // differ by s4/2 at least, however they are turned.
 //   colour  from dark to bright along s, through the body's own, m w: m is its largest part of red, green
@@ -34,9 +34,10 @@ struct Tones {
   Color ink;            // what the dark tends to
   double share, inked;  // the dark: its share of the own colour's light, how much of it is ink
   double own, white;    // at which s it is the own colour; how much white is in the brightest
+  double shaded;        // s3
 };
-constexpr Tones kPaper{{0x18, 0x1C, 0x22}, 0.55, 0.08, 0.67, 0.45};
-constexpr Tones kScreen{{0x08, 0x0C, 0x12}, 0.36, 0.10, 0.72, 0.26};
+constexpr Tones kPaper{{0x18, 0x1C, 0x22}, 0.55, 0.08, 0.67, 0.45, 0.12};
+constexpr Tones kScreen{{0x08, 0x0C, 0x12}, 0.36, 0.10, 0.72, 0.26, -0.12};
 
 Color deep(Color own, const Tones& t) {
   const double most = std::max({own.r, own.g, own.b, std::uint8_t(1)});
@@ -99,7 +100,7 @@ Shaded shade(Color own, Theme theme, const Light& light, const Vec3& normal) {
                      : mix(own, high, (std::min(s, 1.0) - t.own) / (1 - t.own));
   };
   const double base = 0.15 + 0.13 * sky + 0.26 * (1 + normal.dot(light.across)) / 2;
-  return {tone(base + 0.58 * sun), tone(base + 0.12 * sun)};
+  return {tone(base + 0.58 * sun), tone(base + t.shaded * sun)};
 }
 
 Shaded shine(Color own, Theme theme, const Light& light, const Vec3& normal, const Vec3& sight) {

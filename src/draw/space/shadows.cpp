@@ -394,7 +394,7 @@ void add_shadows(SpaceFrame& s) {
     return ground.normal.dot(s.lens.perspective() ? Vec3(s.lens.eye() - ground.point) : s.lens.back) > 0;
   };
   if (!s.stage.ground || !above(*s.stage.ground)) return;
-  s.solids.shade = s.stage.look.theme == Theme::paper ? Color{0x14, 0x1A, 0x24, 62} : Color{0, 0, 0, 148};
+  s.solids.shade = s.stage.look.theme == Theme::paper ? Color{0x14, 0x1A, 0x24, 62} : Color{0, 0, 0, 132};
   s.solids.touch = s.stage.look.theme == Theme::paper ? Color{0x14, 0x1A, 0x24, 90} : Color{0, 0, 0, 150};
   cast_on_ground(s, *s.stage.ground);
   for (const Ground& slope : s.stage.slopes)

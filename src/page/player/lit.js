@@ -181,7 +181,7 @@ export class Lit {
       programs.cover
         .use()
         .whole("shade", 1)
-        .vec("ink", this.dark ? [0, 0, 0, 148 / 255] : [0x14 / 255, 0x1a / 255, 0x24 / 255, 62 / 255]);
+        .vec("ink", this.dark ? [0, 0, 0, 132 / 255] : [0x14 / 255, 0x1a / 255, 0x24 / 255, 62 / 255]);
       gl.bindVertexArray(this.empty);
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     }

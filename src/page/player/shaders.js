@@ -221,7 +221,7 @@ void main() {
     vec3 s = sight(place);
     shaded = shine(n, s, sun, false), lit = shine(n, s, sun, true);
   } else {
-    shaded = tone(base + 0.12 * sun), lit = tone(base + 0.58 * sun);
+    shaded = tone(base + (dark > 0.5 ? -0.12 : 0.12) * sun), lit = tone(base + 0.58 * sun);
   }
   vec3 it = mix(mix(shaded, lit, reached / 4.0), vec3(12, 16, 22) / 255.0, darkness(number, place, n));
   // both are worked out for every pixel of a quad, as their widths need
