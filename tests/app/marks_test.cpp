@@ -138,6 +138,27 @@ TEST(Marks, AnArrowsTipLiesWhereTheQuantitySays) {
   EXPECT_GT(arrows, 150) << "too few were looked at";
 }
 
+/// A force of a contact begins where it acts, or where the scene has it.
+TEST(Marks, AForceBeginsWhereItActsOrAtItsPlace) {
+  Filmed film(scene::read(std::string(kScenes) + "slope.toml"));
+  const sim::Snapshot now = film.now(0);
+  draw::Marks::Vector vector;
+  vector.body = 0;
+  for (const draw::Quantity quantity : {draw::Quantity::normal_force, draw::Quantity::friction}) {
+    vector.quantity = quantity, vector.at.reset();
+    const auto acts = draw::readings(vector, film.artist.scene_info(), now);
+    vector.at.emplace(), vector.at->body = 0;
+    const auto moved = draw::readings(vector, film.artist.scene_info(), now);
+    ASSERT_EQ(acts.size(), 1u);
+    ASSERT_EQ(moved.size(), 1u);
+    // the block is 0.6 m thick
+    const sim::Vec3 normal(0.5, std::sqrt(0.75), 0);
+    EXPECT_NEAR((now.bodies[0].position - acts[0].tail).dot(normal), 0.3, 1e-6);
+    EXPECT_EQ(moved[0].tail, now.bodies[0].position);
+    EXPECT_EQ(moved[0].value, acts[0].value);
+  }
+}
+
 /// Numbers in labels are those of `states`, rounded as the label says: over ten films.
 TEST(Marks, PrintedNumbersAreTheRuns) {
   for (const auto& [file, word, body, path] :

@@ -189,11 +189,30 @@ std::vector<Reading> all_readings(const Marks::Vector& vector, const sim::SceneI
   return {};
 }
 
+/// Whether an arrow of it begins where something touches or holds the body.
+bool has_place(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::spring:
+    case Quantity::spring_force:
+    case Quantity::joint_force:
+    case Quantity::contact:
+    case Quantity::normal_force:
+    case Quantity::friction:
+    case Quantity::impulse:
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 std::vector<Reading> readings(const Marks::Vector& vector, const sim::SceneInfo& cast,
                               const sim::Snapshot& now) {
   std::vector<Reading> all = all_readings(vector, cast, now);
+  // forces begin where they act, or where the scene has them
+  if (vector.at && vector.body >= 0 && has_place(vector.quantity))
+    for (Reading& each : all) each.tail = place(*vector.at, now);
   if (vector.with.empty()) return all;
   // a rope over wheels has more parts, behind those of all joints
   const bool joints = vector.quantity == Quantity::joint_force || vector.quantity == Quantity::joint_torque;
