@@ -184,6 +184,31 @@ INSTANTIATE_TEST_SUITE_P(Overlaps, Heap,
                                                           std::string("sticks")),
                                           testing::Values(60, 240, 600)));
 
+// What flies high above a heap that lands falls as alone.
+class FallBeside : public testing::TestWithParam<std::tuple<bool, int>> {};
+
+TEST_P(FallBeside, AHeapIsThatOfABodyAlone) {
+  const auto [space, rate] = GetParam();
+  const std::string high =
+      fmt::format("\n[[ball]]\nradius = 0.05\nposition = {}\n", space ? "[0, 5.9, 0]" : "[3, 5.9]");
+  const Scene scene =
+      parse(heap(space, "sticks") + high, "heap.toml", {fmt::format("physics.rate={}", rate)});
+  const auto falls = [&](const auto& world) {
+    sim::Stepper stepper(world.model);
+    auto state = world.state;
+    stepper.begin(state);
+    std::size_t ball = 0;
+    for (std::size_t i = 0; i < state.x.size(); ++i) ball = state.x[i][1] > state.x[ball][1] ? i : ball;
+    for (int i = 1; i <= rate * 7 / 10; ++i) {
+      ASSERT_FALSE(stepper.step(state));
+      ASSERT_NEAR(state.v[ball][1], -9.81 * i / rate, 1e-9) << i;
+    }
+  };
+  space ? falls(scene.space()) : falls(scene.plane());
+}
+
+INSTANTIATE_TEST_SUITE_P(Overlaps, FallBeside, testing::Combine(testing::Bool(), testing::Values(60, 240)));
+
 // Fifty blocks that fall onto each other by a millimetre come to rest within two seconds and stay as they
 // are.
 class TallTower : public testing::TestWithParam<std::tuple<bool, int>> {};

@@ -211,7 +211,6 @@ void PlaneIterative::warm_start(StepPart<D> part) {
   if (part.substep == 0) warm_start_.begin(moving_);
   deep_ = plane::warm_start(batches_.data(), int(batches_.size()), poses_.data(), old_.data(), moving_.data(),
                             constants_, slow_, fast_);
-  moderate_warm_start();
   if (part.substep == 0) moderate_warm_start();
 }
 
