@@ -116,7 +116,7 @@ export class Ground {
       const fall = dot(way, normal);
       if (!(fall < -1e-6)) continue;
       const at = plus(from, way, -dot(sub(from, point), normal) / fall),
-        strength = 1 - smooth(Math.hypot(...sub(at, foot)) / radius);
+        strength = 1 - smooth_step(Math.hypot(...sub(at, foot)) / radius);
       image.data.set([POOL_INK[0], POOL_INK[1], POOL_INK[2], Math.round(POOL_INK[3] * strength)], 4 * k);
     }
     const small = document.createElement("canvas");
@@ -181,8 +181,8 @@ export class Ground {
           const r = Math.hypot(off, t) / shown;
           const now = {
             p: lens.page(at),
-            s: loop.length ? 1 : 1 - smooth((r - FROM) / (TO - FROM)),
-            pool: this.dark ? 1 - smooth(r / POOL) : 0,
+            s: loop.length ? 1 : 1 - smooth_step((r - FROM) / (TO - FROM)),
+            pool: this.dark ? 1 - smooth_step(r / POOL) : 0,
           };
           if (before && before.s + now.s > 0.01) {
             const own = this.under_pool(ink, (before.pool + now.pool) / 2);
@@ -233,7 +233,7 @@ export class Ground {
 }
 
 /** From 0 to 1 with level ends. */
-function smooth(u) {
+function smooth_step(u) {
   const q = clamp(u, 0, 1);
   return q * q * (3 - 2 * q);
 }
