@@ -497,6 +497,20 @@ TEST(Space, TheGridIsAsClearInThePoolOfLightAsOutside) {
   }
 }
 
+// A camera that comes nearer would otherwise have finer tiles from one frame to the next.
+TEST(Space, TheGridKeepsItsTilesWhileTheCameraMoves) {
+  Made made = bare_ground(true);
+  draw::CameraKey near = made.cameras[0].keys[0];
+  near.time = 1, near.width = 2.5;
+  made.cameras[0].keys.push_back(near), made.now.time = 1;
+  Renderer renderer(640, 360);
+  const media::Image as_it_is = drawn(renderer, made.picture());
+  made.look.tile = 0.5;  // as at the start
+  EXPECT_EQ(drawn(renderer, made.picture()), as_it_is);
+  made.look.tile = 0.2;
+  EXPECT_NE(drawn(renderer, made.picture()), as_it_is);
+}
+
 TEST(Space, TheSameBytesTwiceAndFromBothBackEnds) {
   OBSCURA_NEEDS_BOTH_BACK_ENDS();
   Renderer osmesa(320, 180, {.backend = Backend::osmesa});

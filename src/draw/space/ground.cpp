@@ -108,11 +108,13 @@ void add_line(const CameraProjection& lens, Vec3 a, Vec3 b, double width, Color 
   list.add({{lens.page(a), width, color}, {lens.page(b), width, color}}, Cap::round);
 }
 
-void draw_grid(const SpaceStage& stage, const CameraProjection& lens, List& list) {
+void draw_grid(const SpaceStage& stage, const Panel& panel, const CameraProjection& lens, List& list) {
   const Ground& ground = *stage.ground;
   const Axes axis = axes(ground);
   const double weight = stage.layout.weight, shown = lens.window.width / lens.scale;
-  const double tile = stage.look.tile > 0 ? stage.look.tile : nice(kTile * weight / lens.scale);
+  // the same all the while, however near the camera comes
+  const double tile =
+      stage.look.tile > 0 ? stage.look.tile : nice(kTile * weight * panel.shown / panel.window.width);
   const bool bounded = stage.closed && stage.ground_face >= 0;
 
   // the foot of what is looked at, and how far around it lines are drawn
@@ -241,7 +243,7 @@ void draw_space_still(const SpaceStage& stage, const std::vector<CameraProjectio
         stage.ground &&
         stage.ground->normal.dot(lens.perspective() ? Vec3(lens.eye() - stage.ground->point) : lens.back) > 0;
     if (above && stage.look.ground) {
-      draw_grid(stage, lens, list);
+      draw_grid(stage, stage.panels[i], lens, list);
       draw_pool(stage, lens, list);
     }
     draw_frame(stage, lens, true, list);

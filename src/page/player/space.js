@@ -155,7 +155,7 @@ export class Space {
     const lenses = this.lenses(frame);
     lit?.begin(context.canvas);
     lenses.forEach((lens, i) => {
-      const fitted = Lens.of(space.panels[i], this.reel.numbers, 0).scale;
+      const { fitted } = space.panels[i];
       if (!lit) {
         this.ground.sketch(context, lens, i, scale, fitted);
         new Sketch(this, context, lens).draw(frame, scale, i);
