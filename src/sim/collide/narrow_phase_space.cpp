@@ -349,6 +349,7 @@ class Shared {
       if (n.dot(n_) < kSteep) return;
       const double core = n.dot(to - from);
       const bool real = touching_.best <= 0 || cross_within(base, other, of_base, of_other);
+      // nearest beyond their ends: what lies there is neither's, but the place is taken
       if (!real) return places_.push_back(at);
       add(at,
           touching_.base_is_b ? couple_.edges(of_other, of_base, n, core)

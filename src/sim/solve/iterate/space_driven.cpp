@@ -1,0 +1,88 @@
+// Kinematic bodies and belts in space: where bodies that are moved go within a substep, what belts and arms
+// that turn with them add to the slip, and the work that they do.
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/solve/iterate/space.h"
+
+namespace obscura::sim {
+
+// what belts add to the speed of a's surface against b's
+Vec<3> SpaceIterative::belt(const ContactConstraint& touch) const {
+  Vec<D> u = Vec<D>::Zero();
+  const auto add = [&](int body, double sign) {
+    if (!carries(body) || model_.bodies[body].belt.isZero(0)) return;
+    u += sign * belt_velocity<D>(model_.bodies[body], stances_[body].room_from_body, Vec<D>(-sign * touch.n));
+  };
+  add(touch.a, 1), add(touch.b, -1);
+  return u;
+}
+
+// Across the normal. Where one of a pair is moved, rows have its velocities at the end of the substep, but
+// arms of its beginning: what sticks to it would follow its surface a substep late, and on a turntable go
+// outwards by w^2 h / 2 of its radius a second.
+//   w_a x (r_a' - r_a) - w_b x (r_b' - r_b)            r'  arms at the end, as the bodies move now
+Vec<3> SpaceIterative::drift(int number, const State<D>& state, double h) const {
+  const ContactConstraint& touch = touches_[std::size_t(number)];
+  const int n = int(model_.bodies.size());
+  const auto ahead = [&](int body) {
+    if (body == n) return BodyMotion<D>();
+    if (drives_.number(body) >= 0) return body_motion(state, body);
+    BodyMotion<D> at = stances_[std::size_t(body)];
+    if (inactive_[std::size_t(body)]) return at;
+    at.x += h * at.v;
+    if (turning(state, body) >= 0)
+      at.room_from_body = rotation<D>(turned<D>(begun_turn(body), AngularVec<D>(h * at.w)));
+    return at;
+  };
+  const BodyMotion<D> a = ahead(touch.a), b = ahead(touch.b);
+  const EvaluatedContact<D> then = evaluate(features_[std::size_t(number)], a, b);
+  const Vec<D> apart = 0.5 * std::max(0.0, then.value) * then.normal;
+  const Vec<D> arm_a = then.point + apart - a.x, arm_b = then.point - apart - b.x;
+  const Vec<D> change =
+      cross_velocity<D>(a.w, arm_a - touch.arm_a) - cross_velocity<D>(b.w, arm_b - touch.arm_b);
+  return change - touch.n.dot(change) * touch.n;
+}
+
+// where they are and how they move at the end of the step, into the state and among those that others touch
+void SpaceIterative::move_driven(State<D>& state, double t, double h) {
+  for (int i = 0; i < drives_.size(); ++i) {
+    const int body = drives_.body(i);
+    const DrivenMotion<D> to = drives_.at(i, t + h);
+    state.x[body] = to.at.x, state.v[body] = moving_[body].v = to.at.v;
+    if (const int k = turning(state, body); k >= 0)
+      state.turn[k] = to.turn, state.spin[k] = moving_[body].w = to.at.w;
+  }
+}
+
+// what they give, J, by an impulse on a, and back on b, at arms from their centres
+double SpaceIterative::given(const Vec<D>& impulse, const BodyMotion<D>& a, int body_a, const Vec<D>& arm_a,
+                             const BodyMotion<D>& b, int body_b, const Vec<D>& arm_b) const {
+  double sum = 0;
+  if (drives_.number(body_a) >= 0) sum -= impulse.dot(a.velocity(arm_a));
+  if (body_b < int(model_.bodies.size()) && drives_.number(body_b) >= 0)
+    sum += impulse.dot(b.velocity(arm_b));
+  return sum;
+}
+
+// by the mean of their velocities
+double SpaceIterative::contact_work(StepPart<D>) const {
+  const auto mean = [&](int body) {
+    BodyMotion<D> at;
+    if (body == int(model_.bodies.size())) return at;
+    at.v = 0.5 * (stances_[body].v + moving_[body].v), at.w = 0.5 * (stances_[body].w + moving_[body].w);
+    return at;
+  };
+  double sum = 0;
+  for (const ContactConstraint& touch : touches_) {
+    if (!carries(touch.a) && !carries(touch.b)) continue;
+    const Vec<D> impulse = touch.normal_impulse * touch.n + touch.tangent_impulse;
+    if (impulse.isZero(0)) continue;
+    sum += given(impulse, mean(touch.a), touch.a, touch.arm_a, mean(touch.b), touch.b, touch.arm_b) -
+           impulse.dot(touch.belt + 0.5 * touch.drift);
+  }
+  return sum;
+}
+
+}  // namespace obscura::sim
