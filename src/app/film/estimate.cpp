@@ -5,6 +5,8 @@
 //                      H  lines of the picture
 //                      L  px of outlines of bodies and springs, times the px that they move from frame to
 //                         frame, 20 at most: the pixels that are encoded anew
+//                         and, where cameras move in space, of the lines of its ground, times the px that
+//                         the picture moves
 //                      u  2 of the quickest presets, times 2^((18 - crf) / 6)
 //   drawing          9 a pixel (quick presets 5, GIF 20, pictures 12); space 20 (GIF 25) and 6 ms a frame;
 //                    and 0.3 s to begin with
@@ -105,6 +107,36 @@ class Outlines {
   double fps_, scale_ = 1;     // px a metre
   std::vector<double> reach_;  // m, one a body
 };
+
+// How far the moves of a camera carry the lines of a ground until `end` (s), px at a place half way to the
+// edge, times how many more lines, and how much closer, it shows than at first. Moves sideways cost little:
+// encoders foresee them.
+double carried(const draw::Camera& camera, double width, double end) {
+  const double out = width / 4;
+  double sum = std::fabs(camera.orbit) * end * out;
+  for (std::size_t i = 1; i < camera.keys.size(); ++i) {
+    const draw::CameraKey &a = camera.keys[i - 1], &b = camera.keys[i];
+    const double part = std::clamp((end - a.time) / std::max(b.time - a.time, 1e-9), 0.0, 1.0);
+    double more = 1;
+    if (a.width && b.width && camera.keys[0].width) {
+      more = *a.width * *b.width / std::pow(*camera.keys[0].width, 2);
+      sum += part * more * out * std::fabs(std::log(*b.width / *a.width));
+    }
+    if (a.azimuth && b.azimuth) sum += part * more * out * std::fabs(*b.azimuth - *a.azimuth);
+  }
+  return sum;
+}
+
+// Px of the ground's lines times the px that cameras move them from one frame to the next, mean.
+double moving_ground(const scene::Scene& scene, double frames) {
+  constexpr double kLines = 50;  // widths of a picture: the length of a ground's lines
+  if (scene.dimension() != 3 || !scene.look.ground) return 0;
+  const double width = scene.film.width / double(scene.cameras.size());
+  const double end = std::min(frames / sim::value(scene.film.fps), sim::value(scene.duration));
+  double sum = 0;
+  for (const draw::Camera& camera : scene.cameras) sum += carried(camera, width, end) / frames;
+  return kLines * width * sum;
+}
 
 // The processor time of this thread, s: the time that other programs take does not count.
 double own_time() {
@@ -207,7 +239,8 @@ Needs needs(const scene::Scene& scene, const Shots& shots, const Output& output,
   const sim::Rational end = shots[shots.size() - 1].time;
   const sim::Rational rate = std::visit([](const auto& world) { return world.model.rate; }, scene.world);
   const double steps = sim::value(end) * sim::value(rate);
-  const Measured run = measure(scene, std::int64_t(std::min(steps, 1e15)), patience);
+  Measured run = measure(scene, std::int64_t(std::min(steps, 1e15)), patience);
+  run.moving += moving_ground(scene, double(all.frames));
   // charts and marks are of the whole run, which is made once more for them
   const bool ahead = !scene.film.charts.empty() || !scene.film.marks.empty();
   const double charts = !ahead ? 0 : sim::value(scene.duration) * sim::value(rate);
