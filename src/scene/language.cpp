@@ -527,7 +527,7 @@ std::vector<Key> rows() {
        .example = "false"},
       {.path = "look.clock", .form = boolean, .fallback = "true", .doc = "The time, at the right of the caption.",
        .example = "false"},
-      {.path = "look.type_scale", .form = number, .fallback = "1", .range = {0.5, 3}, .doc = "How much larger all type is: for a large hall, or a small screen.", .example = "1.2"},
+      {.path = "look.type_scale", .form = number, .fallback = "1", .range = {0.5, 3}, .doc = "How much larger all type is, and above 1 the arrows that a film names, too: for a large hall, or a small screen.", .example = "1.2"},
       {.path = "look.decimal", .form = choice, .fallback = "\".\"", .choices = {".", ","}, .doc = "The decimal mark of numbers on the picture.", .example = "\",\""},
       {.path = "look.hatching", .form = boolean, .fallback = "true", .doc = "Strokes on the outside of the walls.",
        .example = "false"},

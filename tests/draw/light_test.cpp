@@ -46,6 +46,17 @@ TEST(Light, TheSunIsStronger) {
   }
 }
 
+/// Edges are darker than what they bound, and lighter where they lie between faces on the dark.
+TEST(Light, EdgesDifferFromTheirFaces) {
+  for (int k = 0; k < 6; ++k) {
+    const Color own = turn(k);
+    for (const Theme theme : {Theme::paper, Theme::screen})
+      EXPECT_LT(luminance(edge(own, theme)), luminance(own));
+    EXPECT_LT(luminance(crease(own, Theme::paper)), luminance(own));
+    EXPECT_GT(luminance(crease(own, Theme::screen)), luminance(own));
+  }
+}
+
 /// A shadow on a face that looks up, a little away from the light: a third darker on the screen, where that
 /// on the ground is dark, too, and a fifth on paper.
 TEST(Light, AShadowOnABodyIsAsDeepAsTheThemeAsks) {

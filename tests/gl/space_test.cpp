@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "draw/compose/depict.h"
 #include "draw/picture/solids.h"
@@ -509,6 +510,34 @@ TEST(Space, TheGridKeepsItsTilesWhileTheCameraMoves) {
   EXPECT_EQ(drawn(renderer, made.picture()), as_it_is);
   made.look.tile = 0.2;
   EXPECT_NE(drawn(renderer, made.picture()), as_it_is);
+}
+
+// The edge between two faces that are seen: lighter than both on the dark, where a body's outline is lost,
+// and darker on paper.
+TEST(Space, TheEdgesOfABoxCatchTheLightOnTheDark) {
+  for (const draw::Theme theme : {draw::Theme::screen, draw::Theme::paper}) {
+    Made made;
+    made.box({0, 0.5, 0}, {0.5, 0.5, 0.5}, "blue");
+    made.look.theme = theme;
+    made.cameras[0].azimuth = std::numbers::pi / 4;
+    draw::CameraKey key;
+    key.center = Vec3(0, 0.5, 0), key.width = 4;
+    made.cameras[0].keys = {key};
+    const draw::CameraProjection lens = made.depictor().lens(made.now);
+    Renderer renderer(1280, 720);
+    const media::Image image = drawn(renderer, made.picture());
+    const Point middle = lens.page({0.5, 0.6, 0.5});
+    const auto bright = [&](double x) { return brightness(at(image, {middle.x() + x, middle.y()})); };
+    double most = 0, least = 255;
+    for (double x = -4; x <= 4; x += 0.5)
+      most = std::max(most, bright(x)), least = std::min(least, bright(x));
+    const double faces[] = {bright(-20), bright(20)};
+    if (theme == draw::Theme::screen) {
+      EXPECT_GT(most, 1.3 * std::max(faces[0], faces[1]));
+    } else {
+      EXPECT_LT(least, 0.9 * std::min(faces[0], faces[1]));
+    }
+  }
 }
 
 TEST(Space, TheSameBytesTwiceAndFromBothBackEnds) {

@@ -39,7 +39,8 @@ Json shape(const draw::Polyhedron& body) {
 SpacePage::SpacePage(const draw::SpaceStage& stage, int part, const draw::Rect& panel, page::Reel& reel)
     : reel_(reel), part_(part) {
   const double k = panel.height / 1080;  // page units a unit of the run's own page
-  Json shapes = Json::array(), pieces = Json::array(), colors = Json::array(), edges = Json::array();
+  Json shapes = Json::array(), pieces = Json::array(), colors = Json::array(), edges = Json::array(),
+       creases = Json::array();
   std::map<std::string, int> known;
   for (const draw::Piece& piece : stage.pieces) {
     Json each{{"body", piece.body}, {"least", piece.least}};
@@ -62,8 +63,10 @@ SpacePage::SpacePage(const draw::SpaceStage& stage, int part, const draw::Rect& 
   for (const draw::Color own : stage.own) {
     colors.push_back(array_of(own));
     edges.push_back(array_of(draw::edge(own, stage.look.theme)));
+    creases.push_back(array_of(draw::crease(own, stage.look.theme)));
   }
   json_["shapes"] = shapes, json_["pieces"] = pieces, json_["colors"] = colors, json_["edges"] = edges;
+  json_["creases"] = creases;
   const draw::Color plate = draw::neutral(stage.look.theme);
   json_["plate"] = {array_of(plate), array_of(draw::edge(plate, stage.look.theme))};
   Json materials = Json::array();

@@ -45,7 +45,7 @@ using sim::Vec3;
 
 Lettering film_lettering(double weight, double type_scale, int rows) {
   return {.point = kFilmType * weight * type_scale,
-          .arrow = weight,
+          .arrow = weight * std::max(1.0, type_scale),
           .weight = weight,
           .pixel = rows > 0 ? 1080.0 / rows : 0};
 }

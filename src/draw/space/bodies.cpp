@@ -325,8 +325,14 @@ void trace(SpaceFrame& s, const std::vector<Vec3>& way, bool closed, int own, in
 
 namespace {
 
+struct EdgeColors {
+  Color outline, crease;
+};
+
+EdgeColors edges(Color own, Theme theme) { return {edge(own, theme), crease(own, theme)}; }
+
 // the outline and the creases of one piece of a body, `number` among those that hide; -1: it hides nothing
-void trace_flat(SpaceFrame& s, const Polyhedron& flat, int number, double width, Color color) {
+void trace_flat(SpaceFrame& s, const Polyhedron& flat, int number, double width, const EdgeColors& colors) {
   std::vector<char> front;
   for (const Polyhedron::Face& face : flat.faces) {
     const Vec3& place = flat.vertices[face.loop[0]];
@@ -339,15 +345,17 @@ void trace_flat(SpaceFrame& s, const Polyhedron& flat, int number, double width,
     if (left && right && a.dot(b) > kCrease) continue;
     const std::array<Vec3, 2> faces{left ? a : flat.faces[e.right].normal, right ? b : a};
     trace(s, {flat.vertices[e.a], flat.vertices[e.b]}, false, number, -1,
-          width * (left && right ? kCreaseLine : kSilhouetteLine), color, faces);
+          width * (left && right ? kCreaseLine : kSilhouetteLine),
+          left && right ? colors.crease : colors.outline, faces);
   }
 }
 
 void trace_piece(SpaceFrame& s, const Piece& piece, const sim::Snapshot::Body& body, const Polyhedron& flat,
-                 int number, Color color) {
+                 int number, const EdgeColors& colors) {
+  const Color color = colors.outline;
   if (piece.form == Piece::Form::polyhedron) {
     if (!in_window(s.lens, body.position, piece.reach)) return;
-    trace_flat(s, flat, number, line_width(s, body.position, piece.least), color);
+    trace_flat(s, flat, number, line_width(s, body.position, piece.least), colors);
     return;
   }
   const Vec3 a = placed(body, piece.a), b = placed(body, piece.b);
@@ -425,12 +433,12 @@ void add_brackets(SpaceFrame& s) {
 
 void trace_edges(SpaceFrame& s) {
   const auto& pieces = s.stage.pieces;
+  const Color dark = edge(neutral(s.stage.look.theme), s.stage.look.theme);
   for (std::size_t i = 0; i < s.brackets.size(); ++i)
-    trace_flat(s, s.brackets[i], kBracketNumber + int(i), kEdgeLine * s.stage.layout.weight,
-               edge(neutral(s.stage.look.theme), s.stage.look.theme));
+    trace_flat(s, s.brackets[i], kBracketNumber + int(i), kEdgeLine * s.stage.layout.weight, {dark, dark});
   for (int i = 0; i < int(pieces.size()); ++i)
     trace_piece(s, pieces[i], s.now.bodies[pieces[i].body], s.placed[i], i,
-                edge(s.stage.own[pieces[i].body], s.stage.look.theme));
+                edges(s.stage.own[pieces[i].body], s.stage.look.theme));
 }
 
 void trace_ghost(SpaceFrame& s, const SpaceGhost& ghost) {
@@ -443,7 +451,8 @@ void trace_ghost(SpaceFrame& s, const SpaceGhost& ghost) {
     if (piece.form == Piece::Form::polyhedron)
       flat = piece.flat.placed(body.orientation.toRotationMatrix(), body.position);
     const Color own = paint(s.stage.own[piece.body], s.stage.look.theme).outline;
-    trace_piece(s, piece, body, flat, -1, mix(s.stage.colours.room, own, ghost.strength));
+    const Color pale = mix(s.stage.colours.room, own, ghost.strength);
+    trace_piece(s, piece, body, flat, -1, {pale, pale});
   }
 }
 

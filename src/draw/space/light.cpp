@@ -128,6 +128,10 @@ Color edge(Color own, Theme theme) {
   return theme == Theme::paper ? mix(own, {0x10, 0x13, 0x18}, 0.58) : mix(own, {0x06, 0x09, 0x0D}, 0.80);
 }
 
+Color crease(Color own, Theme theme) {
+  return theme == Theme::paper ? edge(own, theme) : mix(own, {255, 255, 255}, 0.5);
+}
+
 std::uint32_t stopped(double share) {
   std::uint32_t rays = 0;
   for (int i = 0; i < kRays; ++i)

@@ -40,8 +40,10 @@ Shaded shade(Color own, Theme theme, const Light& light, const sim::Vec3& normal
 /// the eye, unit.
 Shaded shine(Color own, Theme theme, const Light& light, const sim::Vec3& normal, const sim::Vec3& sight);
 
-/// The colour of edges on a body.
+/// The colours of a body's outline, and of edges between faces that are seen: on the dark theme these catch
+/// the light.
 Color edge(Color own, Theme theme);
+Color crease(Color own, Theme theme);
 
 /// A plane of the ground, as far as it takes shadows.
 struct Ground {

@@ -130,7 +130,9 @@ export function forms_of(space) {
   const reaches = new Array(space.colors.length).fill(0);
   space.pieces.forEach((/** @type {any} */ piece, /** @type {number} */ i) => {
     const own = rgb(space.colors[piece.body]),
-      ink = space.edges[piece.body].map((/** @type {number} */ c) => c / 255);
+      of_one = (/** @type {number} */ c) => c / 255,
+      ink = space.edges[piece.body].map(of_one),
+      crease = space.creases[piece.body].slice(0, 3).map(of_one);
     const number = i + 1;
     let reach = 0;
     if (piece.shape !== undefined) {
@@ -142,7 +144,7 @@ export function forms_of(space) {
         const [a, b, left, right] = shape.edges.slice(i, i + 4);
         const n = normal(left),
           m = right >= 0 ? normal(right) : [-n[0], -n[1], -n[2]];
-        edges.push(...at(a), ...at(b), ...n, ...m, piece.body, piece.least, ink[0], ink[1], ink[2]);
+        edges.push(...at(a), ...at(b), ...n, ...m, piece.body, piece.least, ink[0], ink[1], ink[2], ...crease);
       }
       for (let i = 0; i < shape.vertices.length; i += 3) reach = Math.max(reach, Math.hypot(...at(i / 3)));
     } else {

@@ -78,7 +78,7 @@ export class Lit {
     this.reaches = reaches;
     this.solid = new Corners(gl, mesh);
     this.linked = new Corners(gl);
-    this.edges = new Instances(gl, [3, 3, 3, 3, 2, 3], edges);
+    this.edges = new Instances(gl, [3, 3, 3, 3, 2, 3, 3], edges);
     this.rounds = new Instances(gl, [4, 1, 3, 3], rounds);
     this.sides = new Instances(gl, [3, 3, 3, 3], sides);
     this.lines = new Instances(gl, [3, 3, 2, 4, 4]);

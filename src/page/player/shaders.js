@@ -343,15 +343,16 @@ layout(location = 1) in vec3 b;
 layout(location = 2) in vec3 left;
 layout(location = 3) in vec3 other;
 layout(location = 4) in vec2 whose;  // body, half its thickness
-layout(location = 5) in vec3 own;
+layout(location = 5) in vec3 outline;
+layout(location = 6) in vec3 crease;
 out vec4 color;
 void main() {
   vec4 q = turn_of(whose.x);
   vec3 c = at_of(whose.x), p = c + turned(q, a), r = c + turned(q, b), m = turned(q, left), n = turned(q, other);
   vec3 s = sight(p);
   bool one = dot(m, s) > 0.0, two = dot(n, s) > 0.0;
-  color = vec4(own, 1.0);
-  if ((!one && !two) || (one && two && dot(m, n) > 0.94)) { gl_Position = kNowhere; return; }
+  color = vec4(one && two ? crease : outline, 1.0);
+  if ((!one && !two) || (one && two && dot(m, n) > 0.92)) { gl_Position = kNowhere; return; }
   float width = clamp(0.22 * whose.y * camera.y / depth_of(c), 0.5 * page.w, 2.3 * page.w) * (one && two ? 0.75 : 1.3);
   // before the faces beside it, up to where the line ends
   float half_wide = 0.5 * width * depth_of(c) / camera.y, steep = 0.0;

@@ -11,7 +11,7 @@ import { inside_planes } from "./pick.js";
 const WIDEST = 2.3,
   THINNEST = 0.5,
   PART = 0.22, // widths of edges: draw/space/edges.cpp
-  ALIKE = 0.94; // cosine: faces so much alike have none between them
+  ALIKE = 0.92; // cosine: faces so much alike have none between them
 const ITEMS = 300; // items: more are put in order by their middles alone
 const TOUCH = 1e-3; // of a body's size: so far two that touch may be within each other
 const SHADES = 12; // of a trail
@@ -146,7 +146,7 @@ export class Sketch {
     const { space } = this,
       { at, turn } = this.run.body(piece.body),
       own = space.colors[piece.body],
-      ink = `rgb(${space.edges[piece.body].slice(0, 3).join(",")})`;
+      [ink, crease] = [space.edges, space.creases].map((of) => `rgb(${of[piece.body].slice(0, 3).join(",")})`);
     const place = (/** @type {number[]} */ p) => plus(at, turned(turn, p));
     if (piece.shape === undefined) return this.round(place(piece.a), place(piece.b), piece, own, ink);
     const shape = space.shapes[piece.shape],
@@ -154,6 +154,7 @@ export class Sketch {
     for (let i = 0; i < shape.vertices.length; i += 3) corners.push(place(shape.vertices.slice(i, i + 3)));
     this.faces(corners, shape, (f) => turned(turn, shape.normals.slice(3 * f, 3 * f + 3)), own, {
       ink,
+      crease,
       least: piece.least,
       material: space.materials?.[piece.body] ?? 0,
     });
@@ -165,7 +166,7 @@ export class Sketch {
    * @param {{faces: number[][], edges?: number[]}} shape
    * @param {(face: number) => number[]} normal_of
    * @param {number[]} own
-   * @param {{ink: string, least: number, material: number} | null} body none: a thing without edges and shadows
+   * @param {{ink: string, crease: string, least: number, material: number} | null} body none: a thing without edges and shadows
    */
   faces(corners, { faces, edges = [] }, normal_of, own, body) {
     const planes = faces.map((loop, f) => {
@@ -190,18 +191,21 @@ export class Sketch {
         c.stroke();
       });
       if (!body) return;
-      c.beginPath();
-      for (let i = 0; i < edges.length; i += 4) {
-        const [a, b, left, right] = edges.slice(i, i + 4),
-          one = planes[left].front,
-          two = right >= 0 && planes[right].front;
-        if ((!one && !two) || (one && two && dot(planes[left].n, planes[right].n) > ALIKE)) continue;
-        c.moveTo(...at[a]);
-        c.lineTo(...at[b]);
-      }
       c.lineWidth = this.edge(body.least, lens.depth(corners[0]));
-      c.strokeStyle = body.ink;
-      c.stroke();
+      // outlines lie over the ends of creases
+      for (const crease of [true, false]) {
+        c.beginPath();
+        for (let i = 0; i < edges.length; i += 4) {
+          const [a, b, left, right] = edges.slice(i, i + 4),
+            one = planes[left].front,
+            two = right >= 0 && planes[right].front;
+          if (crease ? !one || !two || dot(planes[left].n, planes[right].n) > ALIKE : one === two) continue;
+          c.moveTo(...at[a]);
+          c.lineTo(...at[b]);
+        }
+        c.strokeStyle = crease ? body.crease : body.ink;
+        c.stroke();
+      }
     });
   }
 
