@@ -23,7 +23,8 @@ Json flat(const std::vector<sim::Vec3>& points) {
   return all;
 }
 
-Json shape(const draw::Polyhedron& body) {
+// `round`: see draw::Piece
+Json shape(const draw::Polyhedron& body, const std::vector<std::vector<sim::Vec3>>& round) {
   Json faces = Json::array(), normals = Json::array(), edges = Json::array();
   for (const draw::Polyhedron::Face& face : body.faces) {
     faces.push_back(face.loop);
@@ -31,7 +32,15 @@ Json shape(const draw::Polyhedron& body) {
   }
   for (const draw::Polyhedron::Edge& e : body.edges)
     for (const int i : {e.a, e.b, e.left, e.right}) edges.push_back(i);
-  return {{"vertices", flat(body.vertices)}, {"faces", faces}, {"normals", normals}, {"edges", edges}};
+  Json all{{"vertices", flat(body.vertices)}, {"faces", faces}, {"normals", normals}, {"edges", edges}};
+  if (!round.empty()) {
+    Json corners = Json::array();
+    for (const std::vector<sim::Vec3>& face : round)
+      for (const sim::Vec3& n : face)
+        for (int k = 0; k < 3; ++k) corners.push_back(double(float(n[k])));
+    all["round"] = std::move(corners);
+  }
+  return all;
 }
 
 }  // namespace
@@ -45,7 +54,7 @@ SpacePage::SpacePage(const draw::SpaceStage& stage, int part, const draw::Rect& 
   for (const draw::Piece& piece : stage.pieces) {
     Json each{{"body", piece.body}, {"least", piece.least}};
     if (piece.form == draw::Piece::Form::polyhedron) {
-      Json its = shape(piece.flat);
+      Json its = shape(piece.flat, piece.normals);
       const auto [at, fresh] = known.emplace(its.dump(), int(shapes.size()));
       if (fresh) shapes.push_back(std::move(its));
       each["shape"] = at->second;
@@ -99,7 +108,7 @@ SpacePage::SpacePage(const draw::SpaceStage& stage, int part, const draw::Rect& 
       json_["ground"]["loop"] = flat(loop);
     }
   }
-  if (stage.closed) json_["room"] = shape(stage.room);
+  if (stage.closed) json_["room"] = shape(stage.room, {});
   const auto several = [&](int count, double bound) {
     int first = -1;
     for (int i = 0; i < count; ++i) {

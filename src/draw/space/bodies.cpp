@@ -47,12 +47,14 @@ std::uint32_t corner(SpaceFrame& s, const Vec3& place, const Vec3& normal, Shade
 }
 
 /// The colours of a surface there, of the piece that is being added.
-Shaded surface(const SpaceFrame& s, Color own, const Vec3& place, const Vec3& normal) {
+Shaded surface(const SpaceFrame& s, Color own, const Vec3& place, const Vec3& normal, bool round) {
   const int piece = s.chunks.back().piece;
   const bool metal = piece >= 0 && piece < int(s.stage.pieces.size()) &&
                      s.stage.looks(s.stage.pieces[std::size_t(piece)].body).material == Material::metal;
-  return metal ? shine(own, s.stage.look.theme, s.stage.light, normal, s.lens.sight(place))
-               : shade(own, s.stage.look.theme, s.stage.light, normal);
+  const Theme theme = s.stage.look.theme;
+  if (metal) return shine(own, theme, s.stage.light, normal, s.lens.sight(place));
+  return round ? shade_round(own, theme, s.stage.light, normal, s.lens.sight(place))
+               : shade(own, theme, s.stage.light, normal);
 }
 
 /// The corners of a face. Where another piece of the body continues it, it reaches a little over that, and
@@ -90,7 +92,8 @@ void add_faces(SpaceFrame& s, const Polyhedron& body, Color own,
     const std::vector<Vec3> places = corners_of(s, body, face, goes_on.empty() ? nullptr : &goes_on[f]);
     for (std::size_t i = 0; i < places.size(); ++i)
       corner(s, places[i], face.normal,
-             surface(s, own, places[i], normals.empty() ? face.normal : Vec3(turn * normals[f][i])));
+             surface(s, own, places[i], normals.empty() ? face.normal : Vec3(turn * normals[f][i]),
+                     !normals.empty()));
     for (std::uint32_t i = 2; i < places.size(); ++i)
       for (std::uint32_t k : {first, first + i - 1, first + i}) s.triangles.push_back(k);
   }
@@ -107,7 +110,7 @@ void add_cap(SpaceFrame& s, const Vec3& center, double radius, Color own) {
   const auto at = [&](int ring, int k) {
     const double polar = last * ring / rings, turn = 2 * std::numbers::pi * k / around;
     const Vec3 n = std::cos(polar) * sight + std::sin(polar) * (std::cos(turn) * side + std::sin(turn) * up);
-    return corner(s, center + radius * n, n, surface(s, own, center + radius * n, n));
+    return corner(s, center + radius * n, n, surface(s, own, center + radius * n, n, true));
   };
   const std::uint32_t pole = at(0, 0);
   std::uint32_t above = pole;
@@ -144,7 +147,7 @@ void add_rings(SpaceFrame& s, const std::vector<Vec3>& way, double radius, Color
     for (int k = 0; k < around; ++k) {
       const double a = 2 * std::numbers::pi * k / around;
       const Vec3 n = std::cos(a) * side + std::sin(a) * up;
-      corner(s, way[i] + radius * n, n, surface(s, own, way[i] + radius * n, n));
+      corner(s, way[i] + radius * n, n, surface(s, own, way[i] + radius * n, n, true));
     }
     for (int k = 0; k < around && i > 0; ++k) {
       const auto a = first + std::uint32_t(k), b = first + std::uint32_t((k + 1) % around),

@@ -27,7 +27,9 @@ constexpr double kFall = 1.6;     // of the darkness around a contact: how much 
 constexpr double kBefore = 0.02;  // least depth of what the ground is seen of, over the target's
 constexpr double kNear = 1e-3;    // least depth over the target's
 constexpr double kSharp = 0.6;    // page units: shadows softer than this take more rays
-constexpr double kLevel = 0.05;   // light that comes from lower throws no shadows on the ground
+constexpr double kFacing = 0.5, kMiddle = 0.45;  // of round surfaces on the dark: see shade_round
+constexpr double kGloss = 0.4;                  // how white the mirrored light is
+constexpr double kLevel = 0.05;                 // light that comes from lower throws no shadows on the ground
 
 /// From dark to bright, see above.
 struct Tones {
@@ -91,7 +93,10 @@ Light light(const Vec3& toward) {
   return l;
 }
 
-Shaded shade(Color own, Theme theme, const Light& light, const Vec3& normal) {
+namespace {
+
+// `more`: of s
+Shaded toned(Color own, Theme theme, const Light& light, const Vec3& normal, double more) {
   const double sky = (1 + normal.y()) / 2, sun = std::max(0.0, normal.dot(light.toward));
   const Tones& t = theme == Theme::paper ? kPaper : kScreen;
   const Color low = deep(own, t), high = mix(own, {255, 255, 255}, t.white);
@@ -99,8 +104,22 @@ Shaded shade(Color own, Theme theme, const Light& light, const Vec3& normal) {
     return s < t.own ? mix(low, own, std::max(s, 0.0) / t.own)
                      : mix(own, high, (std::min(s, 1.0) - t.own) / (1 - t.own));
   };
-  const double base = 0.15 + 0.13 * sky + 0.26 * (1 + normal.dot(light.across)) / 2;
+  const double base = 0.15 + 0.13 * sky + 0.26 * (1 + normal.dot(light.across)) / 2 + more;
   return {tone(base + 0.58 * sun), tone(base + t.shaded * sun)};
+}
+
+}  // namespace
+
+Shaded shade(Color own, Theme theme, const Light& light, const Vec3& normal) {
+  return toned(own, theme, light, normal, 0);
+}
+
+Shaded shade_round(Color own, Theme theme, const Light& light, const Vec3& normal, const Vec3& sight) {
+  if (theme == Theme::paper) return shade(own, theme, light, normal);
+  Shaded it = toned(own, theme, light, normal, kFacing * (normal.dot(sight) - kMiddle));
+  const double mirrored = std::max(0.0, normal.dot((light.toward + sight).normalized()));
+  it.lit = mix(it.lit, {255, 255, 255}, kGloss * std::pow(mirrored, 36));
+  return it;
 }
 
 Shaded shine(Color own, Theme theme, const Light& light, const Vec3& normal, const Vec3& sight) {

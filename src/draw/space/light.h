@@ -36,8 +36,13 @@ struct Shaded {
 /// never black: the sky lights what looks up a little more than what looks down.
 Shaded shade(Color own, Theme theme, const Light& light, const sim::Vec3& normal);
 
-/// The same of polished metal, which shows the sky, the horizon and the light; `sight`: the way from there to
-/// the eye, unit.
+/// The same of a surface that is round; `sight`: the way from there to the eye, unit. On the dark theme it is
+/// brighter where it faces the eye, and the light is mirrored in it a little: a cone would be a triangle
+/// otherwise, where the sky and the light balance each other.
+Shaded shade_round(Color own, Theme theme, const Light& light, const sim::Vec3& normal,
+                   const sim::Vec3& sight);
+
+/// The same of polished metal, which shows the sky, the horizon and the light.
 Shaded shine(Color own, Theme theme, const Light& light, const sim::Vec3& normal, const sim::Vec3& sight);
 
 /// The colours of a body's outline, and of edges between faces that are seen: on the dark theme these catch

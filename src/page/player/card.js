@@ -37,7 +37,7 @@ export class Corners {
   fill(mesh) {
     const gl = this.gl,
       colors = new Uint8Array(4 * mesh.count);
-    mesh.colors.forEach((c, i) => colors.set([c >> 16, (c >> 8) & 255, c & 255, 255], 4 * i));
+    mesh.colors.forEach((c, i) => colors.set([c >> 16, (c >> 8) & 255, c & 255, mesh.round[i] ? 255 : 0], 4 * i));
     gl.bindBuffer(gl.ARRAY_BUFFER, this.numbers);
     gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(mesh.corners), gl.DYNAMIC_DRAW);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.colors);

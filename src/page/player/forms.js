@@ -17,11 +17,14 @@ export class Mesh {
     this.corners = [];
     /** @type {number[]} */
     this.colors = []; // one a corner, 0xRRGGBB
+    /** @type {boolean[]} */
+    this.round = []; // one a corner: of a surface that is
   }
 
-  add(center, normal, radius, body, piece, color) {
+  add(center, normal, radius, body, piece, color, round = true) {
     this.corners.push(center[0], center[1], center[2], normal[0], normal[1], normal[2], radius, body, piece);
     this.colors.push(color);
+    this.round.push(round);
   }
 
   get count() {
@@ -31,9 +34,14 @@ export class Mesh {
   /** A polyhedron's faces. */
   flat(shape, body, piece, color) {
     const at = (/** @type {number} */ i) => shape.vertices.slice(3 * i, 3 * i + 3);
+    const round = shape.round !== undefined;
+    let first = 0; // corner of this face
     shape.faces.forEach((/** @type {number[]} */ loop, /** @type {number} */ f) => {
-      const n = shape.normals.slice(3 * f, 3 * f + 3);
-      for (let i = 2; i < loop.length; ++i) for (const v of [loop[0], loop[i - 1], loop[i]]) this.add(at(v), n, 0, body, piece, color);
+      const normal = (/** @type {number} */ i) =>
+        round ? shape.round.slice(3 * (first + i), 3 * (first + i) + 3) : shape.normals.slice(3 * f, 3 * f + 3);
+      for (let i = 2; i < loop.length; ++i)
+        for (const k of [0, i - 1, i]) this.add(at(loop[k]), normal(k), 0, body, piece, color, round);
+      first += loop.length;
     });
   }
 

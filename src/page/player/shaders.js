@@ -68,6 +68,7 @@ vec4 of_near(int i) { return texelFetch(near, ivec2(i & 1023, i >> 10), 0); }
 
 const SOLID_VERTEX = `${PLACE}${CORNERS}${LIGHT}${OF_PIECES}
 out vec3 place, world_normal, color, light;
+flat out float rounded;
 flat out vec2 slope;
 flat out int number, material;
 out vec3 grain;
@@ -89,7 +90,7 @@ void main() {
     // no two boards are cut from one place of the tree
     if (material == WOOD) grain += fract(0.618034 * body) * vec3(11, 1.5, 2.5);
   }
-  color = own.rgb;
+  color = own.rgb, rounded = own.a;
   light = light_at(p);
   float facing = max(-dot(n, light_w.xyz), 1e-3);
   slope = clamp(vec2(dot(n, light_u.xyz), dot(n, light_v.xyz)) / facing, -12.0, 12.0) * light_size.x / light_size.y;
@@ -193,6 +194,7 @@ uniform highp sampler2DShadow map;
 uniform vec3 toward, across;
 uniform float dark;
 in vec3 place, world_normal, color, light, grain;
+flat in float rounded;
 flat in vec2 slope;
 flat in int number, material;
 out vec4 ink;
@@ -221,7 +223,12 @@ void main() {
     vec3 s = sight(place);
     shaded = shine(n, s, sun, false), lit = shine(n, s, sun, true);
   } else {
+    // what is round, on the dark (draw/space/light.cpp: shade_round)
+    vec3 s = sight(place);
+    float round_there = dark > 0.5 ? rounded : 0.0;
+    base += round_there * 0.5 * (dot(n, s) - 0.45);
     shaded = tone(base + (dark > 0.5 ? -0.12 : 0.12) * sun), lit = tone(base + 0.58 * sun);
+    lit = mix(lit, vec3(1), round_there * 0.4 * pow(max(dot(n, normalize(toward + s)), 0.0), 36.0));
   }
   vec3 it = mix(mix(shaded, lit, reached / 4.0), vec3(12, 16, 22) / 255.0, darkness(number, place, n));
   // both are worked out for every pixel of a quad, as their widths need
