@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace obscura::draw {
@@ -58,6 +59,29 @@ TEST(RoundNormals, OfAConeAreRoundAtItsFootAndItsOwnAtTheTip) {
     EXPECT_NEAR(Vec3(normals[f][0].x(), 0, normals[f][0].z()).normalized().dot(Vec3(foot.x(), 0, foot.z())),
                 1, 1e-12);
   }
+}
+
+/// Without its tip both faces of an edge have one normal at each end of it, all the way up.
+TEST(RoundNormals, OfABluntedConeGoOnFromFaceToFace) {
+  const Polyhedron body = blunted(turned(24, true));
+  const auto normals = round_normals(body);
+  ASSERT_EQ(body.faces.size(), 26u);
+  std::map<int, Vec3> at;  // by vertex, of the round faces
+  int shared = 0;
+  for (std::size_t f = 1; f < 25; ++f) {
+    ASSERT_EQ(body.faces[f].loop.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto [it, fresh] = at.try_emplace(body.faces[f].loop[i], normals[f][i]);
+      if (fresh) continue;
+      ++shared;
+      EXPECT_LT((it->second - normals[f][i]).norm(), 1e-12);
+    }
+  }
+  EXPECT_EQ(shared, 48);
+  for (const Polyhedron::Edge& edge : body.edges) EXPECT_GE(edge.right, 0);
+  EXPECT_GT(body.faces[25].normal.y(), 1 - 1e-12);
+  EXPECT_EQ(blunted(box({1, 2, 3})).vertices.size(), 8u);
+  EXPECT_EQ(blunted(turned(24, false)).faces.size(), 26u);
 }
 
 TEST(RoundNormals, OfWhatHasEdgesAreNone) {

@@ -27,7 +27,8 @@ constexpr double kFall = 1.6;     // of the darkness around a contact: how much 
 constexpr double kBefore = 0.02;  // least depth of what the ground is seen of, over the target's
 constexpr double kNear = 1e-3;    // least depth over the target's
 constexpr double kSharp = 0.6;    // page units: shadows softer than this take more rays
-constexpr double kFacing = 0.5, kMiddle = 0.45;  // of round surfaces on the dark: see shade_round
+constexpr double kFacing = 0.8, kMiddle = 0.4;  // of round surfaces on the dark: see shade_round
+constexpr double kInTheSun = 0.4;               // of that, in full light
 constexpr double kGloss = 0.4;                  // how white the mirrored light is
 constexpr double kLevel = 0.05;                 // light that comes from lower throws no shadows on the ground
 
@@ -116,7 +117,9 @@ Shaded shade(Color own, Theme theme, const Light& light, const Vec3& normal) {
 
 Shaded shade_round(Color own, Theme theme, const Light& light, const Vec3& normal, const Vec3& sight) {
   if (theme == Theme::paper) return shade(own, theme, light, normal);
-  Shaded it = toned(own, theme, light, normal, kFacing * (normal.dot(sight) - kMiddle));
+  const double sun = std::max(0.0, normal.dot(light.toward));
+  Shaded it =
+      toned(own, theme, light, normal, kFacing * (1 - (1 - kInTheSun) * sun) * (normal.dot(sight) - kMiddle));
   const double mirrored = std::max(0.0, normal.dot((light.toward + sight).normalized()));
   it.lit = mix(it.lit, {255, 255, 255}, kGloss * std::pow(mirrored, 36));
   return it;

@@ -10,6 +10,7 @@ namespace {
 using sim::Vec3;
 
 constexpr double kSameWay = 1 - 1e-10;  // cosine between faces of one plane
+constexpr double kBlunt = 0.002;        // of an edge: what is cut off at the tip of a cone
 constexpr double kTouching = 1e-6;      // of a side: so near are faces that touch
 
 /// Newell's normal of a loop: right for any flat polygon, and a mean for one that is not quite flat.
@@ -70,6 +71,55 @@ std::vector<std::vector<Vec3>> round_normals(const Polyhedron& body) {
       normals[f].push_back(sum.normalized());
     }
   return normals;
+}
+
+Polyhedron blunted(const Polyhedron& body) {
+  std::vector<std::vector<int>> at(body.vertices.size());  // the faces of each vertex
+  for (int f = 0; f < int(body.faces.size()); ++f)
+    for (int v : body.faces[f].loop) at[v].push_back(f);
+  // each face goes on in two others around the tip, and some look away from each other
+  const auto tip = [&](int v) {
+    bool apart = false;
+    for (const int f : at[v]) {
+      int like = 0;
+      for (const int g : at[v]) {
+        const bool one = body.faces[f].normal.dot(body.faces[g].normal) > kCrease;
+        like += g != f && one, apart = apart || !one;
+      }
+      if (like < 2) return false;
+    }
+    return apart;
+  };
+  std::vector<int> tips;
+  for (int v = 0; v < int(body.vertices.size()); ++v)
+    if (tip(v)) tips.push_back(v);
+  if (tips.empty()) return body;
+
+  Polyhedron cut{.vertices = body.vertices, .faces = body.faces, .edges = {}};
+  for (const int v : tips) {
+    std::map<int, int> on;    // an edge's other vertex -> the vertex on it
+    std::map<int, int> next;  // around the cut
+    const auto place = [&](int other) {
+      const auto [it, fresh] = on.try_emplace(other, int(cut.vertices.size()));
+      if (fresh)
+        cut.vertices.push_back(body.vertices[v] + kBlunt * (body.vertices[other] - body.vertices[v]));
+      return it->second;
+    };
+    for (const int f : at[v]) {
+      const std::vector<int>& was = body.faces[f].loop;
+      const std::size_t i = std::find(was.begin(), was.end(), v) - was.begin(), count = was.size();
+      const int before = place(was[(i + count - 1) % count]), after = place(was[(i + 1) % count]);
+      std::vector<int>& loop = cut.faces[f].loop;
+      const auto here = std::find(loop.begin(), loop.end(), v);
+      *here = after, loop.insert(here, before);
+      next[after] = before;
+    }
+    Polyhedron::Face end{{}, Vec3::Zero()};
+    for (int i = next.begin()->first; end.loop.size() < next.size(); i = next[i]) end.loop.push_back(i);
+    cut.faces.push_back(std::move(end));
+  }
+  join(cut);
+  return cut;
 }
 
 std::vector<std::vector<char>> continued(const Polyhedron& body, const Polyhedron& other) {

@@ -35,6 +35,10 @@ inline constexpr double kCrease = 0.92;
 /// all are flat.
 std::vector<std::vector<sim::Vec3>> round_normals(const Polyhedron& body);
 
+/// The same without the tips of its cones: at a tip a round surface has no normal, and each of its faces would
+/// have a tone of its own there. A five-hundredth of the edges at a tip is cut off.
+Polyhedron blunted(const Polyhedron& body);
+
 /// For each face, at each side of its loop, whether a face of `other` lies in its plane and continues it
 /// there.
 std::vector<std::vector<char>> continued(const Polyhedron& body, const Polyhedron& other);

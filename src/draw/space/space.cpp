@@ -42,8 +42,8 @@ Piece flat(int body, Polyhedron form) {
   piece.least = piece.reach;
   for (const Polyhedron::Face& face : form.faces)
     piece.least = std::min(piece.least, face.normal.dot(form.vertices[face.loop[0]] - middle));
-  piece.normals = round_normals(form);
-  piece.flat = std::move(form);
+  piece.flat = blunted(form);
+  piece.normals = round_normals(piece.flat);
   return piece;
 }
 

@@ -226,7 +226,7 @@ void main() {
     // what is round, on the dark (draw/space/light.cpp: shade_round)
     vec3 s = sight(place);
     float round_there = dark > 0.5 ? rounded : 0.0;
-    base += round_there * 0.5 * (dot(n, s) - 0.45);
+    base += round_there * 0.8 * (1.0 - 0.6 * sun) * (dot(n, s) - 0.4);
     shaded = tone(base + (dark > 0.5 ? -0.12 : 0.12) * sun), lit = tone(base + 0.58 * sun);
     lit = mix(lit, vec3(1), round_there * 0.4 * pow(max(dot(n, normalize(toward + s)), 0.0), 36.0));
   }
