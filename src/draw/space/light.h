@@ -22,7 +22,7 @@ struct Light {
 };
 
 /// Radius of the light's disc at distance 1.
-inline constexpr double kSpread = 0.10;
+inline constexpr double kSpread = 0.055;
 
 /// `toward`: a direction to the light; from above.
 Light light(const sim::Vec3& toward);
