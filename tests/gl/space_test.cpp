@@ -110,8 +110,9 @@ TEST(Space, ABallsCentreIsWhereAHandPutsIt) {
 TEST(Space, OnALargerPageItIsWhereThePageHasIt) {
   Made made;
   made.cast.walls.clear();
-  made.look.light = Vec3(0, 0, 1);
   made.body(sim::ShapeKind::ball, {0.3, 1.2, 0}, Vec3::Zero(), 0.02, "black");
+  // from behind, so that it is dark all over
+  made.look.light = -made.depictor().lens(made.now).sight({0.3, 1.2, 0});
   const draw::Picture own = made.picture();
   Renderer renderer(640, 360);
   // a half as large, with its corner at a part of a pixel

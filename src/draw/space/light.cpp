@@ -21,16 +21,16 @@ namespace {
 
 using sim::Vec3;
 
-constexpr double kFine = 0.08;    // of kSpread: of the disc that lights thin rods
-constexpr double kFoot = 0.35;    // of a ball's radius: where it is near the ground
-constexpr double kFall = 1.6;     // of the darkness around a contact: how much sooner than straight it falls
-constexpr double kBefore = 0.02;  // least depth of what the ground is seen of, over the target's
-constexpr double kNear = 1e-3;    // least depth over the target's
-constexpr double kSharp = 0.6;    // page units: shadows softer than this take more rays
-constexpr double kFacing = 0.8, kMiddle = 0.4;  // of round surfaces on the dark: see shade_round
-constexpr double kInTheSun = 0.4;               // of that, in full light
-constexpr double kGloss = 0.4;                  // how white the mirrored light is
-constexpr double kLevel = 0.05;                 // light that comes from lower throws no shadows on the ground
+constexpr double kFine = 0.08;     // of kSpread: of the disc that lights thin rods
+constexpr double kFoot = 0.35;     // of a ball's radius: where it is near the ground
+constexpr double kFall = 1.6;      // of the darkness around a contact: how much sooner than straight it falls
+constexpr double kBefore = 0.02;   // least depth of what the ground is seen of, over the target's
+constexpr double kNear = 1e-3;     // least depth over the target's
+constexpr double kSharp = 0.6;     // page units: shadows softer than this take more rays
+constexpr double kMiddle = 0.4;    // of round surfaces: the cosine to the eye at which they are as flat ones
+constexpr double kInTheSun = 0.4;  // of that, in full light
+constexpr double kGloss = 0.4;     // how white the mirrored light is
+constexpr double kLevel = 0.05;    // light that comes from lower throws no shadows on the ground
 
 /// From dark to bright, see above.
 struct Tones {
@@ -38,9 +38,10 @@ struct Tones {
   double share, inked;  // the dark: its share of the own colour's light, how much of it is ink
   double own, white;    // at which s it is the own colour; how much white is in the brightest
   double shaded;        // s3
+  double facing;        // of round surfaces: how much brighter they are where they face the eye
 };
-constexpr Tones kPaper{{0x18, 0x1C, 0x22}, 0.55, 0.08, 0.67, 0.45, 0.12};
-constexpr Tones kScreen{{0x08, 0x0C, 0x12}, 0.36, 0.10, 0.72, 0.26, -0.12};
+constexpr Tones kPaper{{0x18, 0x1C, 0x22}, 0.55, 0.08, 0.67, 0.45, 0.12, 0.55};
+constexpr Tones kScreen{{0x08, 0x0C, 0x12}, 0.36, 0.10, 0.72, 0.26, -0.12, 0.8};
 
 Color deep(Color own, const Tones& t) {
   const double most = std::max({own.r, own.g, own.b, std::uint8_t(1)});
@@ -116,10 +117,10 @@ Shaded shade(Color own, Theme theme, const Light& light, const Vec3& normal) {
 }
 
 Shaded shade_round(Color own, Theme theme, const Light& light, const Vec3& normal, const Vec3& sight) {
-  if (theme == Theme::paper) return shade(own, theme, light, normal);
-  const double sun = std::max(0.0, normal.dot(light.toward));
+  const double sun = std::max(0.0, normal.dot(light.toward)),
+               facing = (theme == Theme::paper ? kPaper : kScreen).facing;
   Shaded it =
-      toned(own, theme, light, normal, kFacing * (1 - (1 - kInTheSun) * sun) * (normal.dot(sight) - kMiddle));
+      toned(own, theme, light, normal, facing * (1 - (1 - kInTheSun) * sun) * (normal.dot(sight) - kMiddle));
   const double mirrored = std::max(0.0, normal.dot((light.toward + sight).normalized()));
   it.lit = mix(it.lit, {255, 255, 255}, kGloss * std::pow(mirrored, 36));
   return it;

@@ -36,9 +36,9 @@ struct Shaded {
 /// never black: the sky lights what looks up a little more than what looks down.
 Shaded shade(Color own, Theme theme, const Light& light, const sim::Vec3& normal);
 
-/// The same of a surface that is round; `sight`: the way from there to the eye, unit. On the dark theme it is
-/// brighter where it faces the eye, and the light is mirrored in it a little: a cone would be a triangle
-/// otherwise, where the sky and the light balance each other.
+/// The same of a surface that is round; `sight`: the way from there to the eye, unit. It is brighter where it
+/// faces the eye, and the light is mirrored in it a little: a cone would be a triangle otherwise, where the
+/// sky and the light balance each other.
 Shaded shade_round(Color own, Theme theme, const Light& light, const sim::Vec3& normal,
                    const sim::Vec3& sight);
 

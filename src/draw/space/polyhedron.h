@@ -36,7 +36,8 @@ inline constexpr double kCrease = 0.92;
 std::vector<std::vector<sim::Vec3>> round_normals(const Polyhedron& body);
 
 /// The same without the tips of its cones: at a tip a round surface has no normal, and each of its faces would
-/// have a tone of its own there. A five-hundredth of the edges at a tip is cut off.
+/// have a tone of its own there. A five-hundredth of the edges at a tip is cut off,
+/// and faces end there in several pieces.
 Polyhedron blunted(const Polyhedron& body);
 
 /// For each face, at each side of its loop, whether a face of `other` lies in its plane and continues it

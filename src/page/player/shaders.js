@@ -223,12 +223,11 @@ void main() {
     vec3 s = sight(place);
     shaded = shine(n, s, sun, false), lit = shine(n, s, sun, true);
   } else {
-    // what is round, on the dark (draw/space/light.cpp: shade_round)
+    // what is round (draw/space/light.cpp: shade_round)
     vec3 s = sight(place);
-    float round_there = dark > 0.5 ? rounded : 0.0;
-    base += round_there * 0.8 * (1.0 - 0.6 * sun) * (dot(n, s) - 0.4);
+    base += rounded * (dark > 0.5 ? 0.8 : 0.55) * (1.0 - 0.6 * sun) * (dot(n, s) - 0.4);
     shaded = tone(base + (dark > 0.5 ? -0.12 : 0.12) * sun), lit = tone(base + 0.58 * sun);
-    lit = mix(lit, vec3(1), round_there * 0.4 * pow(max(dot(n, normalize(toward + s)), 0.0), 36.0));
+    lit = mix(lit, vec3(1), rounded * 0.4 * pow(max(dot(n, normalize(toward + s)), 0.0), 36.0));
   }
   vec3 it = mix(mix(shaded, lit, reached / 4.0), vec3(12, 16, 22) / 255.0, darkness(number, place, n));
   // both are worked out for every pixel of a quad, as their widths need
