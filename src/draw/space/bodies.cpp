@@ -15,6 +15,7 @@ using sim::Vec3;
 
 constexpr double kEdgeLine = 2.3;                            // page units
 constexpr double kSilhouetteLine = 1.3, kCreaseLine = 0.75;  // of that
+constexpr double kTurnedAway = 0.1;                          // cosine from which on an edge is all crease
 constexpr double kBracket = 20;                      // page units: half a plate from which something hangs
 constexpr double kHung = 1.3, kLeastBracket = 0.45;  // of what hangs there: not wider; of its size: nor less
 constexpr double kFromAbove = 0.85;      // sine of the camera's elevation, from which on there are none
@@ -334,22 +335,23 @@ struct EdgeColors {
 
 EdgeColors edges(Color own, Theme theme) { return {edge(own, theme), crease(own, theme)}; }
 
-// the outline and the creases of one piece of a body, `number` among those that hide; -1: it hides nothing
+// the outline and the creases of one piece of a body, `number` among those that hide; -1: it hides nothing. A
+// crease becomes part of the outline little by little as one of its faces turns away, so that none jumps.
 void trace_flat(SpaceFrame& s, const Polyhedron& flat, int number, double width, const EdgeColors& colors) {
-  std::vector<char> front;
-  for (const Polyhedron::Face& face : flat.faces) {
-    const Vec3& place = flat.vertices[face.loop[0]];
-    front.push_back(face.normal.dot(s.lens.perspective() ? Vec3(s.lens.eye() - place) : s.lens.back) > 0);
-  }
+  std::vector<double> facing;  // cosines
+  for (const Polyhedron::Face& face : flat.faces)
+    facing.push_back(face.normal.dot(s.lens.sight(flat.vertices[face.loop[0]])));
   for (const Polyhedron::Edge& e : flat.edges) {
-    const bool left = front[e.left], right = e.right >= 0 && front[e.right];
+    const bool left = facing[e.left] > 0, right = e.right >= 0 && facing[e.right] > 0;
     if (!left && !right) continue;
     const Vec3 &a = flat.faces[e.left].normal, &b = flat.faces[right ? e.right : e.left].normal;
     if (left && right && a.dot(b) > kCrease) continue;
     const std::array<Vec3, 2> faces{left ? a : flat.faces[e.right].normal, right ? b : a};
+    const double part =
+        left && right ? std::min(1.0, std::min(facing[e.left], facing[e.right]) / kTurnedAway) : 0;
     trace(s, {flat.vertices[e.a], flat.vertices[e.b]}, false, number, -1,
-          width * (left && right ? kCreaseLine : kSilhouetteLine),
-          left && right ? colors.crease : colors.outline, faces);
+          width * std::lerp(kSilhouetteLine, kCreaseLine, part), mix(colors.outline, colors.crease, part),
+          faces);
   }
 }
 

@@ -357,9 +357,10 @@ void main() {
   vec3 c = at_of(whose.x), p = c + turned(q, a), r = c + turned(q, b), m = turned(q, left), n = turned(q, other);
   vec3 s = sight(p);
   bool one = dot(m, s) > 0.0, two = dot(n, s) > 0.0;
-  color = vec4(one && two ? crease : outline, 1.0);
+  float part = one && two ? min(1.0, min(dot(m, s), dot(n, s)) / 0.1) : 0.0;
+  color = vec4(mix(outline, crease, part), 1.0);
   if ((!one && !two) || (one && two && dot(m, n) > 0.92)) { gl_Position = kNowhere; return; }
-  float width = clamp(0.22 * whose.y * camera.y / depth_of(c), 0.5 * page.w, 2.3 * page.w) * (one && two ? 0.75 : 1.3);
+  float width = clamp(0.22 * whose.y * camera.y / depth_of(c), 0.5 * page.w, 2.3 * page.w) * mix(1.3, 0.75, part);
   // before the faces beside it, up to where the line ends
   float half_wide = 0.5 * width * depth_of(c) / camera.y, steep = 0.0;
   if (one) steep = sqrt(1.0 - pow(dot(m, s), 2.0)) / dot(m, s);
