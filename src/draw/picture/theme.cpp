@@ -53,14 +53,14 @@ Paint paint(Color own, Theme theme) {
     // a trail that would hardly be seen on white has the outline's colour
     Color trail = mix(kWhite, own, 0.52);
     if (luminance(trail) > kFaint) trail = mix(kWhite, dark, 0.52);
-    return {mix(own, kWhite, 0.62), dark, dark, trail};
+    return {mix(own, kWhite, 0.62), dark, dark, trail, own};
   }
   // axes darker than the fill: lighter ones were too faint
-  return {own, mix(own, kWhite, 0.25), mix(own, kBlack, 0.6), mix(palette(theme).room, own, 0.72)};
+  return {own, mix(own, kWhite, 0.25), mix(own, kBlack, 0.6), mix(palette(theme).room, own, 0.72), own};
 }
 
 void hush(Paint& paint, const Palette& colours) {
-  for (Color* color : {&paint.fill, &paint.outline, &paint.axis, &paint.trail})
+  for (Color* color : {&paint.fill, &paint.outline, &paint.axis, &paint.trail, &paint.small})
     *color = mix(*color, colours.room, kHushed);
 }
 

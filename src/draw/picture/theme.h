@@ -23,9 +23,9 @@ struct Palette {
   Color water, surface;  // a fluid in the plane, and the line of its surface
 };
 
-/// The colours of one body.
+/// The colours of one body; `small`: of the fill where it is too small for an outline.
 struct Paint {
-  Color fill, outline, axis, trail;
+  Color fill, outline, axis, trail, small;
 };
 
 /// Weights in page units at the weight 1 of a landscape page (layout.h), as in print on a slide.

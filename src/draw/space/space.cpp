@@ -303,8 +303,10 @@ SpaceStage::SpaceStage(const sim::SceneInfo& info, const Look& looks_, const std
     if (line) form.turns = 0;
     coils.push_back(form);
   }
-  for (const sim::SceneInfo::Mouse& mouse : cast.mice)
+  for (const sim::SceneInfo::Mouse& mouse : cast.mice) {
     hands.push_back(coil(std::max(mouse.rest_length, 0.2 * cast.scale) * layout.scale, 0.82 * w));
+    if (look.springs == Look::Springs::lines) hands.back().turns = 0;
+  }
   force_scale = look.force_scale > 0 ? look.force_scale : newton(cast);
 }
 
