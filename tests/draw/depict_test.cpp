@@ -244,7 +244,7 @@ TEST(Depict, SmallBoxesHaveThinOutlinesAndDarkerFills) {
     made.cast.bodies[0].half = {half / view.scale, half / view.scale, 0};
     return made.picture().moving.boxes.at(0);
   };
-  const Box large = box(40), limit = box(10), small = box(5);
+  const Box large = box(40), limit = box(13), small = box(5);
   EXPECT_NEAR(limit.line, large.line, 1e-9);
   EXPECT_LT(small.line, 0.15 * 5);
   EXPECT_EQ(limit.fill, large.fill);
