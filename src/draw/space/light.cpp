@@ -40,7 +40,7 @@ struct Tones {
   double shaded;        // s3
   double facing;        // of round surfaces: how much brighter they are where they face the eye
 };
-constexpr Tones kPaper{{0x18, 0x1C, 0x22}, 0.55, 0.08, 0.67, 0.45, 0.12, 0.55};
+constexpr Tones kPaper{{0x18, 0x1C, 0x22}, 0.44, 0.08, 0.67, 0.30, 0.06, 0.55};
 constexpr Tones kScreen{{0x08, 0x0C, 0x12}, 0.36, 0.10, 0.72, 0.26, -0.12, 0.8};
 
 Color deep(Color own, const Tones& t) {

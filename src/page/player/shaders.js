@@ -202,10 +202,10 @@ vec3 darkest() { return (dark > 0.5 ? vec3(8, 12, 18) : vec3(24, 28, 34)) / 255.
 vec3 tone(float s) {
   bool screen = dark > 0.5;
   float most = max(max(color.r, color.g), max(color.b, 1.0 / 255.0)), own = screen ? 0.72 : 0.67;
-  vec3 deep = (screen ? 0.36 : 0.55) * color * sqrt(color / most);
+  vec3 deep = (screen ? 0.36 : 0.44) * color * sqrt(color / most);
   vec3 low = mix(deep, darkest(), screen ? 0.1 : 0.08);
   return s < own ? mix(low, color, max(s, 0.0) / own)
-                 : mix(color, vec3(1), (screen ? 0.26 : 0.45) * (min(s, 1.0) - own) / (1.0 - own));
+                 : mix(color, vec3(1), (screen ? 0.26 : 0.3) * (min(s, 1.0) - own) / (1.0 - own));
 }
 ${MATERIALS}
 void main() {
@@ -226,7 +226,7 @@ void main() {
     // what is round (draw/space/light.cpp: shade_round)
     vec3 s = sight(place);
     base += rounded * (dark > 0.5 ? 0.8 : 0.55) * (1.0 - 0.6 * sun) * (dot(n, s) - 0.4);
-    shaded = tone(base + (dark > 0.5 ? -0.12 : 0.12) * sun), lit = tone(base + 0.58 * sun);
+    shaded = tone(base + (dark > 0.5 ? -0.12 : 0.06) * sun), lit = tone(base + 0.58 * sun);
     lit = mix(lit, vec3(1), rounded * 0.4 * pow(max(dot(n, normalize(toward + s)), 0.0), 36.0));
   }
   vec3 it = mix(mix(shaded, lit, reached / 4.0), vec3(12, 16, 22) / 255.0, darkness(number, place, n));

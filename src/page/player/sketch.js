@@ -89,9 +89,9 @@ export class Sketch {
       darkest = this.dark ? [8, 12, 18] : [24, 28, 34];
     const sun = Math.max(0, dot(n, toward)),
       base = 0.15 + (0.13 * (1 + n[1])) / 2 + (0.26 * (1 + dot(n, across))) / 2,
-      s = clamp(base + (0.12 + 0.46 * reached) * sun, 0, 1),
+      s = clamp(base + (0.06 + 0.52 * reached) * sun, 0, 1),
       mean = MEANS[material] ?? 1;
-    const [part, inked, own, white] = this.dark ? [0.36, 0.1, 0.72, 0.26] : [0.55, 0.08, 0.67, 0.45],
+    const [part, inked, own, white] = this.dark ? [0.36, 0.1, 0.72, 0.26] : [0.44, 0.08, 0.67, 0.3],
       most = Math.max(color[0], color[1], color[2], 1);
     return `rgb(${color.slice(0, 3).map((/** @type {number} */ x, /** @type {number} */ k) => {
       const deep = part * x * Math.sqrt(x / most),
