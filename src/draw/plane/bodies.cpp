@@ -6,9 +6,9 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kLeast = 1.6;       // radius of what is too small to see
-constexpr double kSmallBox = 13;     // page units: half the width of a box under which its outline is thinner
-constexpr double kSmallFill = 0.75;  // of the way from its fill to its full colour, of the smallest
+constexpr double kLeast = 1.6;      // radius of what is too small to see
+constexpr double kSmallBox = 13;    // page units: half the width of a box under which its outline is thinner
+constexpr double kSmallFill = 1.6;  // how soon under that its fill is its full colour
 
 /// How a ball that turns stands: a radius, as the axes of a box are.
 void mark_turns(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
@@ -57,7 +57,7 @@ void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, 
       box.axis_line = std::min(kAxisLine * weight, 0.16 * box.axis);
     }
     box.outline = stage.paints[i].outline;
-    box.fill = mix(stage.paints[i].fill, stage.paints[i].small, kSmallFill * (1 - size));
+    box.fill = mix(stage.paints[i].fill, stage.paints[i].small, std::min(kSmallFill * (1 - size), 1.0));
     box.axis_color = stage.paints[i].axis;
     list.of({Subject::What::body, i});
     list.add(box);
