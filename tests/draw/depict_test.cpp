@@ -251,6 +251,29 @@ TEST(Depict, SmallBoxesHaveThinOutlinesAndDarkerFills) {
   EXPECT_LT(small.fill.r + small.fill.g + small.fill.b, large.fill.r + large.fill.g + large.fill.b);
 }
 
+/// The fills of all that is small are full, whatever its form, and those of its ghosts pale.
+TEST(Depict, WhatIsSmallHasItsFullColourAndItsGhostHasNot) {
+  Made made = room(8, 4.5);
+  made.body(sim::ShapeKind::box, {2, 2, 0}, 1);
+  made.body(sim::ShapeKind::ball, {4, 2, 0});
+  made.body(sim::ShapeKind::polygon, {6, 2, 0});
+  const double half = 4 / made.depictor().view(0).scale;  // page units
+  made.cast.bodies[0].half = {half, half, 0};
+  made.cast.bodies[1].radius = half;
+  made.cast.bodies[2].vertices = {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}};
+  made.look.bodies.assign(3, {});
+  const Color own = *color("sky");
+  for (BodyLook& body : made.look.bodies) body.color = own;
+  const Picture picture = made.picture();
+  EXPECT_EQ(picture.moving.boxes.at(0).fill, own);
+  EXPECT_EQ(picture.moving.discs.at(0).fill, own);
+  EXPECT_EQ(picture.moving.polygons.back().fill, own);
+  List ghosts;
+  made.depictor().ghosts(made.now, 0.3, ghosts);
+  EXPECT_LT(contrast(ghosts.boxes.at(0).fill, palette(Theme::paper).room),
+            contrast(own, palette(Theme::paper).room));
+}
+
 TEST(Depict, AxesReadOnTheFill) {
   // the contrast of WCAG 2: 3 is enough for graphics
   auto luminance = [](Color c) {

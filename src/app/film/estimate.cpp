@@ -127,12 +127,12 @@ double carried(const draw::Camera& camera, double width, double end) {
   return sum;
 }
 
-// Px of the ground's lines times the px that cameras move them from one frame to the next, mean.
-double moving_ground(const scene::Scene& scene, double frames) {
+// Px of the ground's lines times the px that cameras move them from one frame to the next, mean, in so many
+// frames that show the run until `end` (s).
+double moving_ground(const scene::Scene& scene, double end, double frames) {
   constexpr double kLines = 50;  // widths of a picture: the length of a ground's lines
   if (scene.dimension() != 3 || !scene.look.ground) return 0;
   const double width = scene.film.width / double(scene.cameras.size());
-  const double end = std::min(frames / sim::value(scene.film.fps), sim::value(scene.duration));
   double sum = 0;
   for (const draw::Camera& camera : scene.cameras) sum += carried(camera, width, end) / frames;
   return kLines * width * sum;
@@ -240,7 +240,7 @@ Needs needs(const scene::Scene& scene, const Shots& shots, const Output& output,
   const sim::Rational rate = std::visit([](const auto& world) { return world.model.rate; }, scene.world);
   const double steps = sim::value(end) * sim::value(rate);
   Measured run = measure(scene, std::int64_t(std::min(steps, 1e15)), patience);
-  run.moving += moving_ground(scene, double(all.frames));
+  run.moving += moving_ground(scene, sim::value(end), double(all.frames));
   // charts and marks are of the whole run, which is made once more for them
   const bool ahead = !scene.film.charts.empty() || !scene.film.marks.empty();
   const double charts = !ahead ? 0 : sim::value(scene.duration) * sim::value(rate);

@@ -151,6 +151,7 @@ Stage::Stage(const sim::SceneInfo& info, const Look& looks_, const Camera& camer
     const double rest = std::max(mouse.rest_length, 0.2 * cast.scale) * layout.scale;
     hands.push_back(coil(rest, 0.82 * layout.weight));
     hands.back().line = 0.86 * kSpringLine * layout.weight;
+    if (look.springs == Look::Springs::lines) hands.back().turns = 0;
   }
 
   // bodies: the scene's colour, grey for what is held or knots a net, else the next of the palette
@@ -439,10 +440,7 @@ void Illustrator::ghosts(const sim::Snapshot& then, double strength, List& list,
                          const View& view) const {
   Stage faded = plan_->stage;
   faded.look.axes = false;
-  for (Paint& paint : faded.paints) {
-    for (Color* color : {&paint.fill, &paint.outline, &paint.axis})
-      *color = mix(faded.colours.room, *color, strength);
-  }
+  for (Paint& paint : faded.paints) fade(paint, faded.colours.room, 1 - strength);
   // a held body does not move
   const auto still = [&](int body) {
     return faded.cast.bodies[std::size_t(body)].fixed ||

@@ -59,10 +59,12 @@ Paint paint(Color own, Theme theme) {
   return {own, mix(own, kWhite, 0.25), mix(own, kBlack, 0.6), mix(palette(theme).room, own, 0.72), own};
 }
 
-void hush(Paint& paint, const Palette& colours) {
+void fade(Paint& paint, Color toward, double part) {
   for (Color* color : {&paint.fill, &paint.outline, &paint.axis, &paint.trail, &paint.small})
-    *color = mix(*color, colours.room, kHushed);
+    *color = mix(*color, toward, part);
 }
+
+void hush(Paint& paint, const Palette& colours) { fade(paint, colours.room, kHushed); }
 
 Color link_color(const Look& look, const Palette& colours, std::span<const int> bodies) {
   bool any = false;

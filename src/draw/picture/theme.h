@@ -43,6 +43,9 @@ Palette palette(Theme theme);
 /// Fill, outline, axes and trail of a body of this colour.
 Paint paint(Color color, Theme theme);
 
+/// Brings all of a body's colours so far towards another, 0 to 1.
+void fade(Paint& paint, Color toward, double part);
+
 /// Makes a grey body recede further: others are to be looked at. How far towards the room's colour.
 void hush(Paint& paint, const Palette& colours);
 inline constexpr double kHushed = 0.35;

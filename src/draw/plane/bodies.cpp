@@ -7,7 +7,7 @@ namespace obscura::draw {
 namespace {
 
 constexpr double kLeast = 1.6;      // radius of what is too small to see
-constexpr double kSmallBox = 13;    // page units: half the width of a box under which its outline is thinner
+constexpr double kSmallBody = 13;   // page units: half the width of what is small
 constexpr double kSmallFill = 1.6;  // how soon under that its fill is its full colour
 
 /// How a ball that turns stands: a radius, as the axes of a box are.
@@ -35,6 +35,11 @@ void mark_turns(const Stage& stage, const View& view, const sim::Snapshot& now, 
 
 }  // namespace
 
+Color fill_of(const Paint& paint, double half, double weight) {
+  const double size = std::min(half / (kSmallBody * weight), 1.0);
+  return mix(paint.fill, paint.small, std::min(kSmallFill * (1 - size), 1.0));
+}
+
 void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, List& list, bool arms) {
   const double weight = stage.layout.weight;
   list.boxes.reserve(stage.boxes.size());
@@ -50,14 +55,14 @@ void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, 
     box.x_axis = {std::cos(body.angle), -std::sin(body.angle)};
     box.half = half.cwiseMax(0.8 * weight);
     // of small ones the fill is seen, not the outline
-    const double size = std::min(shorter / (kSmallBox * weight), 1.0);
+    const double size = std::min(shorter / (kSmallBody * weight), 1.0);
     box.line = std::min(kOutline * weight, 0.28 * shorter * size);
     if (stage.look.axes && !stage.cast.bodies[i].fixed && shorter > 18 * weight) {
       box.axis = std::min(0.56 * shorter, 44 * weight);
       box.axis_line = std::min(kAxisLine * weight, 0.16 * box.axis);
     }
     box.outline = stage.paints[i].outline;
-    box.fill = mix(stage.paints[i].fill, stage.paints[i].small, std::min(kSmallFill * (1 - size), 1.0));
+    box.fill = fill_of(stage.paints[i], shorter, weight);
     box.axis_color = stage.paints[i].axis;
     list.of({Subject::What::body, i});
     list.add(box);
@@ -78,7 +83,8 @@ void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now,
     if (radius < 3.2 * weight) {
       list.add(Disc{center, radius, 0, paint.outline, paint.outline});
     } else {
-      list.add(Disc{center, radius, std::min(kOutline * weight, 0.32 * radius), paint.fill, paint.outline});
+      list.add(Disc{center, radius, std::min(kOutline * weight, 0.32 * radius),
+                    fill_of(paint, radius, weight), paint.outline});
     }
   }
   if (stage.look.axes) mark_turns(stage, view, now, list);

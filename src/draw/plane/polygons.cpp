@@ -140,6 +140,7 @@ void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& no
           narrow, parts[p].kind == sim::ShapeKind::ball ? view.scale * parts[p].radius : forms.back().narrow);
     }
     const double line = std::min(kOutline * weight, 0.35 * narrow);
+    const Color fill = fill_of(paint, narrow, weight);
     const auto middle = [&](const Part& part) {
       const double s = std::sin(body.angle), c = std::cos(body.angle);
       const Point p = part.center.head<2>();
@@ -155,9 +156,9 @@ void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& no
     }
     for (std::size_t p = 0; p < parts.size(); ++p) {
       if (parts[p].kind == sim::ShapeKind::ball) {
-        list.add(Disc{middle(parts[p]), view.scale * parts[p].radius - line, 0, paint.fill, paint.fill});
+        list.add(Disc{middle(parts[p]), view.scale * parts[p].radius - line, 0, fill, fill});
       } else if (const std::vector<Point> within_it = inner(forms[p], line); within_it.size() > 2) {
-        list.add(within_it, paint.fill);
+        list.add(within_it, fill);
       }
     }
   }

@@ -72,6 +72,10 @@ inline constexpr int kMany = 12;
 /// Of an arrow's growth: smaller ones are not drawn.
 inline constexpr double kSmallest = 0.2;
 
+/// The fill of a body that reaches so far from its middle, page units: that of a small one is its full
+/// colour, for its outline is hardly seen.
+Color fill_of(const Paint& paint, double half, double weight);
+
 /// An arrow from `tail` to `tip` on the page.
 struct Arrow {
   Point tail, tip;

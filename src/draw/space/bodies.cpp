@@ -15,6 +15,7 @@ using sim::Vec3;
 
 constexpr double kEdgeLine = 2.3;                            // page units
 constexpr double kSilhouetteLine = 1.3, kCreaseLine = 0.75;  // of that
+constexpr double kOneWay = 1e-6;                             // of a cosine: normals that are one
 constexpr double kTurnedAway = 0.1;                          // cosine from which on an edge is all crease
 constexpr double kBracket = 20;                      // page units: half a plate from which something hangs
 constexpr double kHung = 1.3, kLeastBracket = 0.45;  // of what hangs there: not wider; of its size: nor less
@@ -80,6 +81,13 @@ std::vector<Vec3> corners_of(const SpaceFrame& s, const Polyhedron& body, const 
   return places;
 }
 
+/// Whether a face is part of a round surface: one of the normals at its corners, turned by `turn`, is not its
+/// own.
+bool goes_round(const Vec3& own, const std::vector<Vec3>& normals, const Eigen::Matrix3d& turn) {
+  return std::any_of(normals.begin(), normals.end(),
+                     [&](const Vec3& n) { return own.dot(turn * n) < 1 - kOneWay; });
+}
+
 /// The faces of a polyhedron that look at the eye, see Piece; `turn` takes `normals` to the world.
 void add_faces(SpaceFrame& s, const Polyhedron& body, Color own,
                const std::vector<std::vector<Vec3>>& normals = {},
@@ -91,10 +99,10 @@ void add_faces(SpaceFrame& s, const Polyhedron& body, Color own,
     if (face.normal.dot(s.lens.perspective() ? Vec3(s.lens.eye() - place) : s.lens.back) <= 0) continue;
     const auto first = std::uint32_t(s.corners.size());
     const std::vector<Vec3> places = corners_of(s, body, face, goes_on.empty() ? nullptr : &goes_on[f]);
+    const bool round = !normals.empty() && goes_round(face.normal, normals[f], turn);
     for (std::size_t i = 0; i < places.size(); ++i)
       corner(s, places[i], face.normal,
-             surface(s, own, places[i], normals.empty() ? face.normal : Vec3(turn * normals[f][i]),
-                     !normals.empty()));
+             surface(s, own, places[i], round ? Vec3(turn * normals[f][i]) : face.normal, round));
     for (std::uint32_t i = 2; i < places.size(); ++i)
       for (std::uint32_t k : {first, first + i - 1, first + i}) s.triangles.push_back(k);
   }

@@ -2,6 +2,7 @@
 //   lit     s = s0 + s1 (1 + n_y)/2 + s4 (1 + n . f)/2 + s2 max(0, n . l)     n  normal, l  to the light
 //   shaded  s = s0 + s1 (1 + n_y)/2 + s4 (1 + n . f)/2 + s3 max(0, n . l)     s3 < s2: round things stay
 //   round; on the dark theme it is below 0: a shadow from which nothing is reflected
+// of what is round s is larger by s5 (1 - 0.6 max(0, n . l)) (n . e - 0.4)       e  to the eye
 // f is level and across the light: two upright faces at a right angle that both look away from the light
 // differ by s4/2 at least, however they are turned.
 //   colour  from dark to bright along s, through the body's own, m w: m is its largest part of red, green
@@ -38,7 +39,7 @@ struct Tones {
   double share, inked;  // the dark: its share of the own colour's light, how much of it is ink
   double own, white;    // at which s it is the own colour; how much white is in the brightest
   double shaded;        // s3
-  double facing;        // of round surfaces: how much brighter they are where they face the eye
+  double facing;        // s5
 };
 constexpr Tones kPaper{{0x18, 0x1C, 0x22}, 0.44, 0.08, 0.67, 0.30, 0.06, 0.55};
 constexpr Tones kScreen{{0x08, 0x0C, 0x12}, 0.36, 0.10, 0.72, 0.26, -0.12, 0.8};

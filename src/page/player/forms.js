@@ -34,13 +34,13 @@ export class Mesh {
   /** A polyhedron's faces. */
   flat(shape, body, piece, color) {
     const at = (/** @type {number} */ i) => shape.vertices.slice(3 * i, 3 * i + 3);
-    const round = shape.round !== undefined;
     let first = 0; // corner of this face
     shape.faces.forEach((/** @type {number[]} */ loop, /** @type {number} */ f) => {
-      const normal = (/** @type {number} */ i) =>
-        round ? shape.round.slice(3 * (first + i), 3 * (first + i) + 3) : shape.normals.slice(3 * f, 3 * f + 3);
+      const own = shape.normals.slice(3 * f, 3 * f + 3),
+        normals = loop.map((_, i) => shape.round?.slice(3 * (first + i), 3 * (first + i) + 3) ?? own),
+        round = normals.some((n) => dot(n, own) < 1 - 1e-6); // of a round surface
       for (let i = 2; i < loop.length; ++i)
-        for (const k of [0, i - 1, i]) this.add(at(loop[k]), normal(k), 0, body, piece, color, round);
+        for (const k of [0, i - 1, i]) this.add(at(loop[k]), normals[k], 0, body, piece, color, round);
       first += loop.length;
     });
   }
