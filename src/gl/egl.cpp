@@ -4,6 +4,7 @@
 #include <dlfcn.h>
 
 #include <array>
+#include <mutex>
 
 #include "gl/backends.h"
 #include "gl/error.h"
@@ -24,6 +25,8 @@ struct EglLibrary {
   decltype(&::eglMakeCurrent) MakeCurrent = nullptr;
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLConfig config = nullptr;
+  mutable std::mutex
+      drawing;  // held while one of the contexts is current: Mesa 22 reads others' drawing lists
 
   // opened and initialised once for the process, never terminated: other threads' contexts live on the same
   // display
@@ -62,7 +65,7 @@ const EglLibrary& egl_library() {
 
 class Egl final : public Context {
  public:
-  Egl() : lib_(egl_library()) {
+  Egl() : lib_(egl_library()), turn_(lib_.drawing) {
     lib_.BindAPI(EGL_OPENGL_API);
     for (const auto& [major, minor] : {std::array{4, 5}, std::array{3, 3}}) {
       const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
@@ -90,13 +93,19 @@ class Egl final : public Context {
   Egl& operator=(const Egl&) = delete;
 
   void make_current() override {
+    if (!turn_.owns_lock()) turn_.lock();
     // the API is bound thread by thread
     lib_.BindAPI(EGL_OPENGL_API);
     if (!lib_.MakeCurrent(lib_.display, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) {
+      turn_.unlock();
       throw Error("EGL: the context cannot be made current");
     }
   }
-  void release() override { lib_.MakeCurrent(lib_.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
+  void release() override {
+    if (!turn_.owns_lock()) return;
+    lib_.MakeCurrent(lib_.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    turn_.unlock();
+  }
   void* function(const char* name) const override {
     return reinterpret_cast<void*>(lib_.GetProcAddress(name));
   }
@@ -112,10 +121,12 @@ class Egl final : public Context {
   }
   void close() {
     release();
+    const std::scoped_lock alone(lib_.drawing);
     lib_.DestroyContext(lib_.display, context_);
   }
 
   const EglLibrary& lib_;
+  std::unique_lock<std::mutex> turn_;  // while it is current
   EGLContext context_ = EGL_NO_CONTEXT;
 };
 

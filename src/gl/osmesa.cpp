@@ -1,9 +1,18 @@
 #include <dlfcn.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
+#include <fstream>
+#include <memory>
+#include <mutex>
 #include <new>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "gl/backends.h"
 #include "gl/error.h"
@@ -18,19 +27,13 @@ constexpr int kFormat = 0x22, kRgba = 0x1908, kDepthBits = 0x30, kStencilBits = 
 constexpr int kProfile = 0x33, kCoreProfile = 0x34, kMajor = 0x36, kMinor = 0x37;
 constexpr unsigned kUnsignedByte = 0x1401;
 
-struct OsMesaLibrary {
-  OSMesaContext (*create)(const int* attributes, OSMesaContext share) = nullptr;
-  void (*destroy)(OSMesaContext) = nullptr;
-  unsigned char (*make_current)(OSMesaContext, void* buffer, unsigned type, int width, int height) = nullptr;
-  void* (*function)(const char* name) = nullptr;
-
+// It draws for one thread at a time. A library has one screen; Mesa 22 looks through the drawing lists of all
+// its contexts when it reads a texture, while their threads free them, and every Mesa fills the pixels of one
+// of them after another. Threads that draw side by side have a copy of the library each.
+class OsMesaLibrary {
+ public:
   // opened once and never closed: Mesa's and LLVM's exit handlers stay behind
-  OsMesaLibrary() {
-    void* handle = nullptr;
-    for (const char* name : {"libOSMesa.so.8", "libOSMesa.so"}) {
-      if (!handle) handle = media::opened(name);
-    }
-    if (!handle) throw Error("OSMesa: libOSMesa.so.8 cannot be opened (package libosmesa6)");
+  explicit OsMesaLibrary(void* handle) {
     const auto find = [&](auto& f, const char* name) {
       f = reinterpret_cast<std::decay_t<decltype(f)>>(dlsym(handle, name));
       if (!f)
@@ -42,54 +45,135 @@ struct OsMesaLibrary {
     find(make_current, "OSMesaMakeCurrent");
     find(function, "OSMesaGetProcAddress");
   }
+
+  OSMesaContext (*create)(const int* attributes, OSMesaContext share) = nullptr;
+  void (*destroy)(OSMesaContext) = nullptr;
+  unsigned char (*make_current)(OSMesaContext, void* buffer, unsigned type, int width, int height) = nullptr;
+  void* (*function)(const char* name) = nullptr;
+  std::mutex drawing;  // held while one of its contexts is current
+  int contexts = 0;
 };
 
-const OsMesaLibrary& os_mesa_library() {
-  static const OsMesaLibrary library;
-  return library;
+/// The process's libraries; contexts are made and destroyed one after another, for copies share Mesa's table
+/// of functions.
+class OsMesaLibraries {
+ public:
+  std::mutex making;
+  std::mutex table;  // held where functions may be added to it
+
+  /// One that nobody draws with, or a new copy, or the least used.
+  OsMesaLibrary& borrow() {
+    if (all_.empty()) all_.push_back(std::make_unique<OsMesaLibrary>(first_opened()));
+    const auto least = [](const auto& a, const auto& b) { return a->contexts < b->contexts; };
+    auto free = std::min_element(all_.begin(), all_.end(), least);
+    if ((*free)->contexts > 0 && all_.size() < std::max(1u, std::thread::hardware_concurrency())) {
+      if (void* copy = copied((*all_.front()).create))
+        free = all_.insert(all_.end(), std::make_unique<OsMesaLibrary>(copy));
+    }
+    ++(*free)->contexts;
+    return **free;
+  }
+  void give_back(OsMesaLibrary& library) { --library.contexts; }
+
+ private:
+  static void* first_opened() {
+    for (const char* name : {"libOSMesa.so.8", "libOSMesa.so"}) {
+      if (void* handle = media::opened(name)) return handle;
+    }
+    throw Error("OSMesa: libOSMesa.so.8 cannot be opened (package libosmesa6)");
+  }
+
+  // The library that has this function once more, from a file in memory: to the loader it is another. The
+  // file stays open, so that no other has its name. Null where that cannot be.
+  template <class F>
+  static void* copied(F function) {
+    Dl_info info{};
+    if (!dladdr(reinterpret_cast<void*>(function), &info) || !info.dli_fname) return nullptr;
+    std::ifstream from(info.dli_fname, std::ios::binary);
+    const int file = memfd_create("libOSMesa", MFD_CLOEXEC);
+    if (file < 0) return nullptr;
+    const std::string name = "/proc/self/fd/" + std::to_string(file);
+    void* handle = nullptr;
+    if (std::ofstream to(name, std::ios::binary); to << from.rdbuf() && to.flush())
+      handle = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!handle) ::close(file);
+    return handle;
+  }
+
+  std::vector<std::unique_ptr<OsMesaLibrary>> all_;
+};
+
+// never destroyed: Mesa's threads may outlive static objects
+OsMesaLibraries& libraries() {
+  static OsMesaLibraries& all = *new OsMesaLibraries;
+  return all;
 }
 
 class OsMesa final : public Context {
  public:
-  OsMesa() : lib_(os_mesa_library()) {
-    for (const auto& [major, minor] : {std::array{4, 5}, std::array{3, 3}}) {
-      const int attributes[] = {kFormat,  kRgba,        kDepthBits, 0,     kStencilBits, 0,     kAccumBits, 0,
-                                kProfile, kCoreProfile, kMajor,     major, kMinor,       minor, 0};
-      errno = 0;
-      if (!context_) context_ = lib_.create(attributes, nullptr);
+  OsMesa() {
+    {
+      const std::scoped_lock alone(libraries().making);
+      lib_ = &libraries().borrow();
+      turn_ = std::unique_lock(lib_->drawing);
+      const std::scoped_lock table(libraries().table);
+      for (const auto& [major, minor] : {std::array{4, 5}, std::array{3, 3}}) {
+        const int attributes[] = {kFormat, kRgba,      kDepthBits, 0,        kStencilBits,
+                                  0,       kAccumBits, 0,          kProfile, kCoreProfile,
+                                  kMajor,  major,      kMinor,     minor,    0};
+        errno = 0;
+        if (!context_) context_ = lib_->create(attributes, nullptr);
+      }
     }
-    if (!context_ && errno == ENOMEM) throw std::bad_alloc();
-    if (!context_) throw Error("OSMesa: no core context of OpenGL 3.3 or newer");
     try {
+      if (!context_ && errno == ENOMEM) throw std::bad_alloc();
+      if (!context_) throw Error("OSMesa: no core context of OpenGL 3.3 or newer");
       make_current();
     } catch (...) {
-      lib_.destroy(context_);
+      close();
       throw;
     }
   }
 
-  // before its buffer is freed: it is flushed into
   ~OsMesa() override {
     release();
-    lib_.destroy(context_);
+    close();
   }
 
   OsMesa(const OsMesa&) = delete;
   OsMesa& operator=(const OsMesa&) = delete;
 
   void make_current() override {
-    if (!lib_.make_current(context_, buffer_.data(), kUnsignedByte, kSide, kSide)) {
+    if (!turn_.owns_lock()) turn_.lock();
+    if (!lib_->make_current(context_, buffer_.data(), kUnsignedByte, kSide, kSide)) {
+      turn_.unlock();
       throw Error("OSMesa: the context cannot be made current");
     }
   }
-  void release() override { lib_.make_current(nullptr, nullptr, 0, 0, 0); }
-  void* function(const char* name) const override { return lib_.function(name); }
+  void release() override {
+    if (!turn_.owns_lock()) return;
+    lib_->make_current(nullptr, nullptr, 0, 0, 0);
+    turn_.unlock();
+  }
+  void* function(const char* name) const override {
+    const std::scoped_lock table(libraries().table);
+    return lib_->function(name);
+  }
   std::string backend() const override { return "OSMesa"; }
 
  private:
+  // before its buffer is freed: it is flushed into
+  void close() {
+    if (turn_.owns_lock()) turn_.unlock();
+    const std::scoped_lock alone(libraries().making, lib_->drawing);
+    if (context_) lib_->destroy(context_);
+    libraries().give_back(*lib_);
+  }
+
   // its own buffer goes unused: pictures are drawn into a framebuffer object
   static constexpr int kSide = 16;
-  const OsMesaLibrary& lib_;
+  OsMesaLibrary* lib_ = nullptr;
+  std::unique_lock<std::mutex> turn_;  // while it is current
   OSMesaContext context_ = nullptr;
   std::array<std::uint8_t, 4 * kSide * kSide> buffer_{};
 };
