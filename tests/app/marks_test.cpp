@@ -450,6 +450,40 @@ TEST(Marks, WordsKeepClearOfBodiesAndArrows) {
   }
 }
 
+/// What is fixed and near to the ground's colour is ground for words: they lie on it without a plate. On
+/// another they have one.
+TEST(Marks, WordsLieOnWhatIsFixedAndPale) {
+  const auto look = [](const std::string& theme, const std::string& color) {
+    std::vector<std::string> sets{"look.theme=" + theme};
+    if (!color.empty()) sets.push_back("wedge.color=" + color);
+    Filmed film(scene::read(kScenes + "slope.toml", sets));
+    const std::int64_t frame = 200;  // 1 s
+    const sim::Snapshot now = film.now(frame);
+    const draw::List list = film.marks(now, frame);
+    const draw::Projection page = film.artist.projection(0, now);
+    int on = 0, plates = 0;
+    for (const draw::Text& text : list.texts) {
+      // right of the wedge's upright side, under its slope
+      const sim::Vec3 low(0, 0, 0), high(0, 2.4, 0), toe(4.156922, 0, 0);
+      const draw::Point a = page.page(high), b = page.page(toe);
+      const double slope = (b.y() - a.y()) / (b.x() - a.x());
+      const bool under = text.at.x() > page.page(low).x() && text.at.y() < page.page(low).y() &&
+                         text.at.y() > a.y() + slope * (text.at.x() - a.x());
+      if (!under || !said(text).starts_with("G")) continue;
+      ++on;
+      for (const draw::Box& box : list.boxes)
+        plates += box.fill.a < 255 && std::abs(box.center.y() - text.at.y()) < box.half.y() &&
+                  std::abs(box.center.x() - text.at.x()) < box.half.x();
+    }
+    EXPECT_GT(on, 0) << theme << " " << color;
+    return plates > 0;
+  };
+  EXPECT_FALSE(look("paper", ""));
+  EXPECT_FALSE(look("screen", ""));
+  EXPECT_FALSE(look("paper", "grey"));
+  EXPECT_TRUE(look("screen", "yellow"));
+}
+
 /// The forces by their kinds add up, and to what the motion shows: the change of velocity over a step.
 TEST(Marks, TheKindsOfForcesAddUpToTheAcceleration) {
   for (const char* name :

@@ -244,15 +244,16 @@ TEST(Depict, SmallBoxesHaveThinOutlinesAndDarkerFills) {
     made.cast.bodies[0].half = {half / view.scale, half / view.scale, 0};
     return made.picture().moving.boxes.at(0);
   };
-  const Box large = box(40), limit = box(13), small = box(5);
+  const Box large = box(40), limit = box(14), small = box(5);
   EXPECT_NEAR(limit.line, large.line, 1e-9);
-  EXPECT_LT(small.line, 0.15 * 5);
+  // thin, but wide enough to tell a box from its neighbours
+  EXPECT_NEAR(small.line, 0.2 * 5, 1e-9);
   EXPECT_EQ(limit.fill, large.fill);
   EXPECT_LT(small.fill.r + small.fill.g + small.fill.b, large.fill.r + large.fill.g + large.fill.b);
 }
 
-/// The fills of all that is small are full, whatever its form, and those of its ghosts pale.
-TEST(Depict, WhatIsSmallHasItsFullColourAndItsGhostHasNot) {
+/// The fills of all that is small are strong, whatever its form, and those of its ghosts pale.
+TEST(Depict, WhatIsSmallHasAStrongFillAndItsGhostHasNot) {
   Made made = room(8, 4.5);
   made.body(sim::ShapeKind::box, {2, 2, 0}, 1);
   made.body(sim::ShapeKind::ball, {4, 2, 0});
@@ -262,16 +263,16 @@ TEST(Depict, WhatIsSmallHasItsFullColourAndItsGhostHasNot) {
   made.cast.bodies[1].radius = half;
   made.cast.bodies[2].vertices = {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}};
   made.look.bodies.assign(3, {});
-  const Color own = *color("sky");
-  for (BodyLook& body : made.look.bodies) body.color = own;
+  for (BodyLook& body : made.look.bodies) body.color = color("sky");
+  const Color strong = mix(*color("sky"), {255, 255, 255}, 0.2);
   const Picture picture = made.picture();
-  EXPECT_EQ(picture.moving.boxes.at(0).fill, own);
-  EXPECT_EQ(picture.moving.discs.at(0).fill, own);
-  EXPECT_EQ(picture.moving.polygons.back().fill, own);
+  EXPECT_EQ(picture.moving.boxes.at(0).fill, strong);
+  EXPECT_EQ(picture.moving.discs.at(0).fill, strong);
+  EXPECT_EQ(picture.moving.polygons.back().fill, strong);
   List ghosts;
   made.depictor().ghosts(made.now, 0.3, ghosts);
   EXPECT_LT(contrast(ghosts.boxes.at(0).fill, palette(Theme::paper).room),
-            contrast(own, palette(Theme::paper).room));
+            contrast(strong, palette(Theme::paper).room));
 }
 
 TEST(Depict, AxesReadOnTheFill) {

@@ -166,6 +166,7 @@ Stage::Stage(const sim::SceneInfo& info, const Look& looks_, const Camera& camer
     const Color color = own.color ? *own.color : quiet ? neutral(look.theme) : turn(taken++);
     paints.push_back(paint(own.quiet ? neutral(look.theme) : color, look.theme));
     if (own.quiet) hush(paints.back(), colours);
+    if (body.fixed && !own.color && !own.quiet) settle(paints.back(), look.theme);
     dots.push_back(is_point(body) ? std::max(tied[i] ? std::min(dot, 0.2 * mesh) : dot, 1.6 * layout.weight)
                                   : 0);
     switch (body.kind) {

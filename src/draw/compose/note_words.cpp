@@ -25,6 +25,8 @@ constexpr double kOffHatching = 2.5;       // from it to the words of a film
 constexpr double kBracketHalf = 24;        // page units: half the width of what something hangs from
 constexpr double kMargin = 0.2, kMarginInPrint = 0.25;  // around words, of their height
 constexpr double kCovered = 60;                         // the cost of words over a body
+constexpr double kOnFixed = 0.1;                        // as against that: over one that is fixed
+constexpr double kPale = 1.7;       // contrast to the room under which words are read as on the room
 constexpr double kOnOutline = 8;    // of each unit of a body's outline under words of a film
 constexpr double kRailChord = 8;    // the length of a curve's pieces, as words see them
 constexpr double kOnRail = 4;       // of each unit of a curve under words
@@ -246,13 +248,24 @@ std::vector<std::vector<Point>> Notes::forms(int index, int corners) const {
   return all;
 }
 
+// whether words are read on a body as beside it: what is fixed and pale
+bool Notes::is_ground(int index) const {
+  if (!view_.view() || !how_.look || !cast_.bodies[std::size_t(index)].fixed) return false;
+  const Look& look = *how_.look;
+  const BodyLook own = std::size_t(index) < look.bodies.size() ? look.bodies[std::size_t(index)] : BodyLook();
+  Paint its = paint(own.color ? *own.color : neutral(look.theme), look.theme);
+  if (!own.color) settle(its, look.theme);
+  return own.quiet || contrast(its.fill, colours_.room) < kPale;
+}
+
 // the outlines of bodies, and what lies within
 void Notes::avoid_areas() {
   for (std::size_t i = 0; i < cast_.bodies.size(); ++i)
     for (const std::vector<Point>& outline : forms(int(i), 12)) {
       for (std::size_t k = 0; k < outline.size(); ++k)
         placing_.avoid(outline[k], outline[(k + 1) % outline.size()], kOnOutline);
-      placing_.avoid(outline, kCovered * point_);
+      if (!is_ground(int(i)))
+        placing_.avoid(outline, (cast_.bodies[i].fixed ? kOnFixed : 1) * kCovered * point_);
     }
   avoid_springs();
   avoid_joints();

@@ -49,6 +49,7 @@ class Notes {
   void hang(const sim::Vec3& a, const sim::Vec3& b);
   bool film() const { return how_.plan != nullptr || how_.survey != nullptr; }
   static Point size(const Formula& f) { return {f.width, f.ascent + f.descent}; }
+  bool is_ground(int index) const;
   void avoid_bodies();
   void avoid_areas();
   void avoid_springs();

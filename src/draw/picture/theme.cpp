@@ -10,6 +10,7 @@ namespace {
 constexpr Color kWhite{0xFF, 0xFF, 0xFF}, kBlack{0, 0, 0};
 constexpr double kFaint = 0.75;  // luminance: white is 1
 constexpr double kFaintestInk = 0.15;
+constexpr double kSettled = 0.76;
 constexpr double kHushedLink = 0.5;
 constexpr double kLegible = 4.5;                       // contrast
 constexpr double kStrongShade = 0.5, kFaintShade = 3;  // part of the way to the ink; contrast to the room
@@ -53,7 +54,7 @@ Paint paint(Color own, Theme theme) {
     // a trail that would hardly be seen on white has the outline's colour
     Color trail = mix(kWhite, own, 0.52);
     if (luminance(trail) > kFaint) trail = mix(kWhite, dark, 0.52);
-    return {mix(own, kWhite, 0.62), dark, dark, trail, own};
+    return {mix(own, kWhite, 0.62), dark, dark, trail, mix(own, kWhite, 0.2)};
   }
   // axes darker than the fill: lighter ones were too faint
   return {own, mix(own, kWhite, 0.25), mix(own, kBlack, 0.6), mix(palette(theme).room, own, 0.72), own};
@@ -65,6 +66,10 @@ void fade(Paint& paint, Color toward, double part) {
 }
 
 void hush(Paint& paint, const Palette& colours) { fade(paint, colours.room, kHushed); }
+
+void settle(Paint& paint, Theme theme) {
+  if (theme == Theme::screen) paint.fill = mix(paint.fill, palette(theme).room, kSettled);
+}
 
 Color link_color(const Look& look, const Palette& colours, std::span<const int> bodies) {
   bool any = false;

@@ -6,9 +6,10 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kLeast = 1.6;      // radius of what is too small to see
-constexpr double kSmallBody = 13;   // page units: half the width of what is small
-constexpr double kSmallFill = 1.6;  // how soon under that its fill is its full colour
+constexpr double kLeast = 1.6;        // radius of what is too small to see
+constexpr double kSmallBody = 13;     // page units: half the width of what is small
+constexpr double kThinOutline = 0.2;  // of a box that is small, of half its width
+constexpr double kSmallFill = 1.6;    // how soon under that its fill is the strong one
 
 /// How a ball that turns stands: a radius, as the axes of a box are.
 void mark_turns(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
@@ -54,9 +55,7 @@ void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, 
     box.center = center;
     box.x_axis = {std::cos(body.angle), -std::sin(body.angle)};
     box.half = half.cwiseMax(0.8 * weight);
-    // of small ones the fill is seen, not the outline
-    const double size = std::min(shorter / (kSmallBody * weight), 1.0);
-    box.line = std::min(kOutline * weight, 0.28 * shorter * size);
+    box.line = std::min(kOutline * weight, kThinOutline * shorter);
     if (stage.look.axes && !stage.cast.bodies[i].fixed && shorter > 18 * weight) {
       box.axis = std::min(0.56 * shorter, 44 * weight);
       box.axis_line = std::min(kAxisLine * weight, 0.16 * box.axis);

@@ -72,7 +72,7 @@ inline constexpr int kMany = 12;
 /// Of an arrow's growth: smaller ones are not drawn.
 inline constexpr double kSmallest = 0.2;
 
-/// The fill of a body that reaches so far from its middle, page units: that of a small one is its full
+/// The fill of a body that reaches so far from its middle, page units: that of a small one is its strong
 /// colour, for its outline is hardly seen.
 Color fill_of(const Paint& paint, double half, double weight);
 
