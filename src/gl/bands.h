@@ -21,4 +21,15 @@ struct Band {
 /// have one. An edge outside of a row adds nothing there, so the bands do not show.
 std::vector<Band> banded(std::span<const Edge> edges, float y0, float y1, std::vector<Edge>& list);
 
+/// Of the pixels of rows [y0, y1) those in columns [full0, full1) lie wholly in a polygon, and those that
+/// meet it at all in [part0, part1).
+struct Columns {
+  int part0 = 0, part1 = 0, full0 = 0, full1 = 0;
+};
+
+bool convex(std::span<const Edge> edges);
+
+/// Of a convex polygon; none meets these rows: all are 0.
+Columns columns(std::span<const Edge> edges, int y0, int y1);
+
 }  // namespace obscura::gl

@@ -14,7 +14,8 @@ constexpr float kMargin = 0.75f;  // px beyond an edge where a pixel may still b
 constexpr double kDot = 3;        // px radius under which a disc's area is summed in chords
 
 constexpr double kSlab = 0.75;  // px half extent under which a pixel may meet both edges of a slab
-constexpr int kTile = 16;       // px, of the layers
+constexpr int kTile = 16;       // px, of the layers, and rows of a band of what is large
+constexpr float kLarge = 64;    // px: of a polygon's lesser extent
 
 constexpr GLsizei kCorners = 4;  // of a quad, as a triangle strip
 
@@ -58,6 +59,7 @@ Painter::Painter(const Functions& gl, int width, int height)
       stroke_program_(gl, "stroke.vert", "stroke.frag"),
       polygon_program_(gl, "polygon.vert", "polygon.frag"),
       quadrangle_program_(gl, "quadrangle.vert", "quadrangle.frag"),
+      inside_program_(gl, "quadrangle.vert", "inside.frag"),
       glyph_program_(gl, "glyph.vert", "glyph.frag"),
       ground_uniform_(stroke_program_.uniform("ground")),
       disc_array_(gl, sizeof(Disc), 1,
@@ -93,7 +95,7 @@ Painter::Painter(const Functions& gl, int width, int height)
       glyph_pictures_(gl) {
   for (const Program* program :
        {&disc_program_, &dot_program_, &box_program_, &bar_program_, &slab_program_, &frame_program_,
-        &stroke_program_, &polygon_program_, &quadrangle_program_, &glyph_program_}) {
+        &stroke_program_, &polygon_program_, &quadrangle_program_, &inside_program_, &glyph_program_}) {
     program->use();
     gl.Uniform2f(program->uniform("per_half_size"), 2.0f / float(width), 2.0f / float(height));
   }
@@ -314,16 +316,26 @@ void Painter::add(const draw::List& list, const draw::Polygon& polygon, Damage& 
               std::max(bounds.y1, edge.py)};
   }
   bounds = {bounds.x0 - 0.5f, bounds.y0 - 0.5f, bounds.x1 + 0.5f, bounds.y1 + 0.5f};
-  if (!touches(bounds, damage)) return;
+  const bool large =
+      count <= 4 && std::min(bounds.x1 - bounds.x0, bounds.y1 - bounds.y0) > kLarge && convex(outline_);
+  if (large) {
+    if (!any(bounds & clip_)) return;
+    corners_.clear();
+    for (const Edge& edge : outline_) corners_.push_back({edge.px, edge.py});
+    mark(corners_, clip_, damage);
+  } else if (!touches(bounds, damage)) {
+    return;
+  }
   const Bounds page = bounds & Bounds{-1, -1, float(width_ + 1), float(height_ + 1)};
   if (count == 3 || count == 4) {
-    Quadrangle& made =
-        quadrangles_.emplace_back(Quadrangle{page.x0, page.y0, page.x1, page.y1, {}, polygon.fill});
+    Quadrangle made{page.x0, page.y0, page.x1, page.y1, {}, polygon.fill};
     // of three the last is there twice
     for (std::size_t i = 0; i < 4; ++i) {
       const Edge& edge = outline_[std::min(i, outline_.size() - 1)];
       made.corners[2 * i] = edge.px, made.corners[2 * i + 1] = edge.py;
     }
+    if (large) return add_large(made);
+    quadrangles_.push_back(made);
     const int end = int(quadrangles_.size());
     return run(Shape::quadrangle, end - 1, end, erases(polygon.fill));
   }
@@ -332,6 +344,35 @@ void Painter::add(const draw::List& list, const draw::Polygon& polygon, Damage& 
     polygons_.push_back(
         {page.x0, band.y0, page.x1, band.y1, float(band.first), float(band.count), polygon.fill});
   run(Shape::polygon, first, int(polygons_.size()), erases(polygon.fill));
+}
+
+// The outline at hand, which is convex, in bands of rows: what meets its edges, and what lies wholly in it,
+// for which nobody need look at its edges.
+void Painter::add_large(const Quadrangle& whole) {
+  const int first = int(quadrangles_.size());
+  insides_.clear();
+  const auto part = [&](std::vector<Quadrangle>& to, float x0, float y0, float x1, float y1) {
+    const Quadrangle& made = to.emplace_back(whole);
+    const Bounds seen = Bounds{x0, y0, x1, y1} & Bounds{made.x0, made.y0, made.x1, made.y1};
+    to.back().x0 = seen.x0, to.back().y0 = seen.y0, to.back().x1 = seen.x1, to.back().y1 = seen.y1;
+    if (!any(seen)) to.pop_back();
+  };
+  for (int y = int(std::floor(whole.y0)); float(y) < whole.y1; y += kTile) {
+    const Columns at = columns(outline_, y, y + kTile);
+    const auto top = float(y), bottom = float(y + kTile);
+    if (at.full1 - at.full0 < kTile) {
+      part(quadrangles_, float(at.part0), top, float(at.part1), bottom);
+    } else {
+      part(quadrangles_, float(at.part0), top, float(at.full0), bottom);
+      part(insides_, float(at.full0), top, float(at.full1), bottom);
+      part(quadrangles_, float(at.full1), top, float(at.part1), bottom);
+    }
+  }
+  const int edges = int(quadrangles_.size());
+  quadrangles_.insert(quadrangles_.end(), insides_.begin(), insides_.end());
+  const int end = int(quadrangles_.size());
+  if (edges > first) run(Shape::quadrangle, first, edges, erases(whole.fill));
+  if (end > edges) run(Shape::inside, edges, end, erases(whole.fill));
 }
 
 void Painter::add(const draw::Text& text, Damage& damage) {
@@ -415,6 +456,9 @@ void Painter::draw(const Run& run) {
       break;
     case Shape::quadrangle:
       quads(quadrangle_program_, quadrangle_array_);
+      break;
+    case Shape::inside:
+      quads(inside_program_, quadrangle_array_);
       break;
     case Shape::glyph:
       quads(glyph_program_, glyph_array_);

@@ -48,7 +48,21 @@ class Painter {
     float u, v;
     draw::Color ink;
   };
-  enum class Shape { disc, dot, box, bar, slab, frame, stroke, darken, lighten, polygon, quadrangle, glyph };
+  enum class Shape {
+    disc,
+    dot,
+    box,
+    bar,
+    slab,
+    frame,
+    stroke,
+    darken,
+    lighten,
+    polygon,
+    quadrangle,
+    inside,
+    glyph
+  };
   /// The geometry of one draw call.
   struct Run {
     Shape shape;
@@ -71,6 +85,7 @@ class Painter {
   void lay_boxes();
   void add(const draw::List& list, const draw::Stroke& stroke, Damage& damage);
   void add(const draw::List& list, const draw::Polygon& polygon, Damage& damage);
+  void add_large(const Quadrangle& whole);
   void add(const draw::Text& text, Damage& damage);
   bool touches(const Bounds& bounds, Damage& damage) const;
   static void mark(std::span<const Damage::Corner> polygon, const Bounds& seen, Damage& damage);
@@ -83,7 +98,7 @@ class Painter {
   int width_, height_;
   double scale_;  // px a page unit
   Program disc_program_, dot_program_, box_program_, bar_program_, slab_program_, frame_program_,
-      stroke_program_, polygon_program_, quadrangle_program_, glyph_program_;
+      stroke_program_, polygon_program_, quadrangle_program_, inside_program_, glyph_program_;
   int ground_uniform_;
   VertexArray disc_array_, box_array_, strip_array_, polygon_array_, quadrangle_array_, glyph_array_;
   Buffer index_buffer_, edge_buffer_;
@@ -103,8 +118,9 @@ class Painter {
   Strip strip_;
   std::vector<draw::Node> row_;  // at hand, on whole pixels
   std::vector<Polygon> polygons_;
-  std::vector<Edge> edges_, outline_;  // of all polygons, band by band; of the one at hand
-  std::vector<Quadrangle> quadrangles_;
+  std::vector<Damage::Corner> corners_;            // of the polygon at hand
+  std::vector<Edge> edges_, outline_;              // of all polygons, band by band; of the one at hand
+  std::vector<Quadrangle> quadrangles_, insides_;  // the pixels wholly within one at hand
   std::vector<Glyph> glyphs_;
 
  public:

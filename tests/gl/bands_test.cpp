@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
+#include <vector>
 
 namespace obscura::gl {
 namespace {
@@ -78,6 +80,77 @@ TEST(Bands, OfTwiceTheEdgesAreTwiceTheWork) {
   EXPECT_LE(work(20'000), 2.5 * work(10'000));
   EXPECT_LE(work(20'000), 100'000);
   EXPECT_LE(work(1000), 40'000);
+}
+
+/// Against a look at the corners and the middle of each pixel.
+TEST(Bands, ColumnsAreWhollyInAConvexPolygonOrMeetIt) {
+  std::mt19937 any(7);
+  const auto number = [&](float low, float high) {
+    return low + (high - low) * float(any() % 100003) / 100003.0f;
+  };
+  for (int k = 0; k < 200; ++k) {
+    // corners on an ellipse in order
+    const int n = 3 + k % 2;
+    std::vector<float> angles;
+    for (int i = 0; i < n; ++i) angles.push_back(number(0, 6.28f));
+    std::sort(angles.begin(), angles.end());
+    const float rx = number(20, 90), ry = number(20, 90);
+    std::vector<std::pair<float, float>> at;
+    for (const float angle : angles) at.emplace_back(100 + rx * std::cos(angle), 90 + ry * std::sin(angle));
+    if (k == 0) at = {{0, 0}, {90, 0}, {0, 64}};
+    if (k == 1) at = {{10, 16}, {80, 16}, {80, 80}, {10, 80}};
+    std::vector<Edge> edges;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const auto [px, py] = at[i];
+      const auto [qx, qy] = at[(i + 1) % at.size()];
+      edges.push_back({px, py, qx, qy});
+    }
+    if (!convex(edges)) continue;
+    const auto inside = [&](double x, double y, double by) {
+      bool left = true, right = true;
+      for (const Edge& e : edges) {
+        const double length = std::hypot(e.qx - e.px, e.qy - e.py);
+        const double side = ((e.qx - e.px) * (y - e.py) - (e.qy - e.py) * (x - e.px)) / (length + 1e-9);
+        left = left && side <= by, right = right && side >= -by;
+      }
+      return left || right;
+    };
+    int full = 0;
+    for (int row = 0; row < 192; row += 16) {
+      const Columns found = columns(edges, row, row + 16);
+      full += found.full1 - found.full0;
+      for (int x = 0; x < 200; ++x)
+        for (int y = row; y < row + 16; ++y) {
+          const bool corners = inside(x, y, 1e-3) && inside(x + 1, y, 1e-3) && inside(x, y + 1, 1e-3) &&
+                               inside(x + 1, y + 1, 1e-3);
+          if (x >= found.full0 && x < found.full1) {
+            ASSERT_TRUE(corners) << k << ": " << x << ", " << y;
+          }
+          if (inside(x + 0.5, y + 0.5, 0)) {
+            ASSERT_TRUE(x >= found.part0 && x < found.part1) << k << ": " << x << ", " << y;
+          }
+        }
+    }
+    if (k < 2) {
+      EXPECT_GT(full, 100) << "most of it is found";
+    }
+  }
+}
+
+TEST(Bands, ABowTieAndAnArrowsHeadAreNotConvex) {
+  const auto closed = [](const std::vector<std::pair<float, float>>& at) {
+    std::vector<Edge> edges;
+    for (std::size_t i = 0; i < at.size(); ++i)
+      edges.push_back(
+          {at[i].first, at[i].second, at[(i + 1) % at.size()].first, at[(i + 1) % at.size()].second});
+    return edges;
+  };
+  EXPECT_TRUE(convex(closed({{0, 0}, {4, 0}, {4, 3}, {0, 3}})));
+  EXPECT_TRUE(convex(closed({{0, 0}, {0, 3}, {4, 3}, {4, 0}})));
+  EXPECT_TRUE(convex(closed({{0, 0}, {2, 0}, {4, 0}, {0, 3}})));
+  EXPECT_FALSE(convex(closed({{0, 0}, {4, 3}, {4, 0}, {0, 3}})));
+  EXPECT_FALSE(convex(closed({{0, 0}, {4, 1}, {0, 2}, {1, 1}})));
+  EXPECT_FALSE(convex(closed({{0, 0}, {4, 1}, {8, 2}})));
 }
 
 }  // namespace

@@ -210,6 +210,33 @@ TEST(Painting, HalosAreHolesWhereThereIsNoGround) {
       }
 }
 
+/// Those of four corners are filled by rows of pixels that lie wholly in them, and where the first corner
+/// comes again at the end they are not. As one moves, nothing is left behind.
+TEST(Painting, LargePolygonsAreTheSameFromTheirEdgesAndFromWithin) {
+  const auto picture = [](double turn, bool again, std::uint8_t alpha) {
+    draw::Picture made;
+    made.aspect = 2;
+    made.ground = kGround;
+    std::vector<draw::Point> corners;
+    for (const draw::Point& p :
+         {draw::Point(-700, -260), draw::Point(520, -300), draw::Point(900, 240), draw::Point(-300, 400)})
+      corners.push_back(draw::Point(1080, 540) + Eigen::Rotation2Dd(turn) * p);
+    if (again) corners.push_back(corners[0]);
+    made.moving.add(draw::Disc{{1000, 500}, 300, 0, kBlue, kBlue});
+    made.moving.add(corners, draw::Color{0xD0, 0x80, 0x20, alpha});
+    return made;
+  };
+  Renderer moves(1296, 648), fresh(1296, 648), other(1296, 648);
+  for (const double turn : {0.0, 0.3, 1.1, 1.5707963267948966, 2.5, 4.0}) {
+    for (const std::uint8_t alpha : {std::uint8_t(255), std::uint8_t(120)}) {
+      const media::Image image = drawn(moves, picture(turn, false, alpha));
+      EXPECT_EQ(image, drawn(fresh, picture(turn, true, alpha))) << turn;
+      drawn(other, blank(image, kGround));
+      EXPECT_EQ(image, drawn(other, picture(turn, false, alpha))) << turn;
+    }
+  }
+}
+
 // A film that stands still: the same things again change nothing, whoever made them, and what comes after is
 // drawn over what was there.
 TEST(Painting, TheSamePictureAgainChangesNothing) {
