@@ -61,7 +61,7 @@ class OsMesaLibraries {
   std::mutex making;
   std::mutex table;  // held where functions may be added to it
 
-  /// One that nobody draws with, or a new copy, or the least used.
+  /// A library without contexts, else a new copy, else the one with the fewest.
   OsMesaLibrary& borrow() {
     if (all_.empty()) all_.push_back(std::make_unique<OsMesaLibrary>(first_opened()));
     const auto least = [](const auto& a, const auto& b) { return a->contexts < b->contexts; };

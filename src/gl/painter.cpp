@@ -346,8 +346,8 @@ void Painter::add(const draw::List& list, const draw::Polygon& polygon, Damage& 
   run(Shape::polygon, first, int(polygons_.size()), erases(polygon.fill));
 }
 
-// The outline at hand, which is convex, in bands of rows: what meets its edges, and what lies wholly in it,
-// for which nobody need look at its edges.
+// The outline at hand, which is convex, in bands of rows: the pixels that meet its edges, and those that lie
+// wholly in it, which are filled without the edges.
 void Painter::add_large(const Quadrangle& whole) {
   const int first = int(quadrangles_.size());
   insides_.clear();
