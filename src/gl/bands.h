@@ -27,9 +27,10 @@ struct Columns {
   int part0 = 0, part1 = 0, full0 = 0, full1 = 0;
 };
 
+/// Whether a closed outline of up to four edges turns one way only.
 bool convex(std::span<const Edge> edges);
 
-/// Of a convex polygon; none meets these rows: all are 0.
+/// Of a convex polygon, edges in px; where it does not meet these rows all are 0.
 Columns columns(std::span<const Edge> edges, int y0, int y1);
 
 }  // namespace obscura::gl

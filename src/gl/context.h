@@ -12,7 +12,8 @@ enum class Backend { automatic, osmesa, egl };
 class Context {
  public:
   virtual ~Context() = default;
-  /// Makes it this thread's current context. No other thread may have it current.
+  /// Makes it this thread's current context. No other thread may have it current, nor this thread another; it
+  /// may wait for other threads' contexts.
   virtual void make_current() = 0;
   /// Leaves this thread without a current context, so that another may take it.
   virtual void release() = 0;

@@ -25,8 +25,8 @@ struct EglLibrary {
   decltype(&::eglMakeCurrent) MakeCurrent = nullptr;
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLConfig config = nullptr;
-  mutable std::mutex
-      drawing;  // held while one of the contexts is current: Mesa 22 reads others' drawing lists
+  // held while one of the contexts is current: all have one screen (osmesa.cpp)
+  mutable std::mutex drawing;
 
   // opened and initialised once for the process, never terminated: other threads' contexts live on the same
   // display

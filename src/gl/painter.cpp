@@ -352,10 +352,11 @@ void Painter::add_large(const Quadrangle& whole) {
   const int first = int(quadrangles_.size());
   insides_.clear();
   const auto part = [&](std::vector<Quadrangle>& to, float x0, float y0, float x1, float y1) {
-    const Quadrangle& made = to.emplace_back(whole);
-    const Bounds seen = Bounds{x0, y0, x1, y1} & Bounds{made.x0, made.y0, made.x1, made.y1};
-    to.back().x0 = seen.x0, to.back().y0 = seen.y0, to.back().x1 = seen.x1, to.back().y1 = seen.y1;
-    if (!any(seen)) to.pop_back();
+    const Bounds seen = Bounds{x0, y0, x1, y1} & Bounds{whole.x0, whole.y0, whole.x1, whole.y1};
+    if (!any(seen)) return;
+    Quadrangle piece = whole;
+    piece.x0 = seen.x0, piece.y0 = seen.y0, piece.x1 = seen.x1, piece.y1 = seen.y1;
+    to.push_back(piece);
   };
   for (int y = int(std::floor(whole.y0)); float(y) < whole.y1; y += kTile) {
     const Columns at = columns(outline_, y, y + kTile);

@@ -162,11 +162,13 @@ Stage::Stage(const sim::SceneInfo& info, const Look& looks_, const Camera& camer
   for (int i = 0; i < int(cast.bodies.size()); ++i) {
     const sim::SceneInfo::Body& body = cast.bodies[i];
     const BodyLook own = looks(i);
-    const bool quiet = body.fixed || knot(i);
-    const Color color = own.color ? *own.color : quiet ? neutral(look.theme) : turn(taken++);
-    paints.push_back(paint(own.quiet ? neutral(look.theme) : color, look.theme));
-    if (own.quiet) hush(paints.back(), colours);
-    if (body.fixed && !own.color && !own.quiet) settle(paints.back(), look.theme);
+    if (body.fixed) {
+      paints.push_back(fixed_paint(own, look.theme));
+    } else {
+      const Color color = own.color ? *own.color : knot(i) ? neutral(look.theme) : turn(taken++);
+      paints.push_back(paint(own.quiet ? neutral(look.theme) : color, look.theme));
+      if (own.quiet) hush(paints.back(), colours);
+    }
     dots.push_back(is_point(body) ? std::max(tied[i] ? std::min(dot, 0.2 * mesh) : dot, 1.6 * layout.weight)
                                   : 0);
     switch (body.kind) {

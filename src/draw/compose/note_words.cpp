@@ -253,9 +253,7 @@ bool Notes::is_ground(int index) const {
   if (!view_.view() || !how_.look || !cast_.bodies[std::size_t(index)].fixed) return false;
   const Look& look = *how_.look;
   const BodyLook own = std::size_t(index) < look.bodies.size() ? look.bodies[std::size_t(index)] : BodyLook();
-  Paint its = paint(own.color ? *own.color : neutral(look.theme), look.theme);
-  if (!own.color) settle(its, look.theme);
-  return own.quiet || contrast(its.fill, colours_.room) < kPale;
+  return contrast(fixed_paint(own, look.theme).fill, colours_.room) < kPale;
 }
 
 // the outlines of bodies, and what lies within

@@ -10,7 +10,7 @@ namespace {
 constexpr Color kWhite{0xFF, 0xFF, 0xFF}, kBlack{0, 0, 0};
 constexpr double kFaint = 0.75;  // luminance: white is 1
 constexpr double kFaintestInk = 0.15;
-constexpr double kSettled = 0.76;
+constexpr double kSettled = 0.76;  // of the way to the room's colour: the fill of what is fixed, on the dark
 constexpr double kHushedLink = 0.5;
 constexpr double kLegible = 4.5;                       // contrast
 constexpr double kStrongShade = 0.5, kFaintShade = 3;  // part of the way to the ink; contrast to the room
@@ -67,8 +67,14 @@ void fade(Paint& paint, Color toward, double part) {
 
 void hush(Paint& paint, const Palette& colours) { fade(paint, colours.room, kHushed); }
 
-void settle(Paint& paint, Theme theme) {
-  if (theme == Theme::screen) paint.fill = mix(paint.fill, palette(theme).room, kSettled);
+Paint fixed_paint(const BodyLook& own, Theme theme) {
+  Paint made = paint(own.color && !own.quiet ? *own.color : neutral(theme), theme);
+  if (own.quiet) {
+    hush(made, palette(theme));
+  } else if (!own.color && theme == Theme::screen) {
+    made.fill = mix(made.fill, palette(theme).room, kSettled);
+  }
+  return made;
 }
 
 Color link_color(const Look& look, const Palette& colours, std::span<const int> bodies) {

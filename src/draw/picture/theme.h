@@ -57,10 +57,10 @@ Color link_color(const Look& look, const Palette& colours, std::span<const int> 
 /// The same of a joint: all that a rope hangs on and lies on and the wheels of a belt are among its bodies.
 Color joint_color(const Look& look, const Palette& colours, const sim::SceneInfo& cast, std::size_t joint);
 
-/// Of what is fixed in the plane and has no colour of its own: on the dark its fill is near to the room's
-/// colour, as fills are on paper, so that it is ground for what moves and for words. Small things keep
+/// Of what is fixed in the plane. If it has no colour of its own, its fill on the dark is near to the room's
+/// colour, as fills are on paper, so that it is ground for what moves and for words; small things keep
 /// theirs.
-void settle(Paint& paint, Theme theme);
+Paint fixed_paint(const BodyLook& own, Theme theme);
 
 /// What a trail of this colour fades to: nearer to the room's colour than it, but by contrast as far from it
 /// as 15 % of the way to the ink is, or not faded at all.
