@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <span>
 #include <utility>
@@ -115,15 +116,16 @@ double time_of_way(const Offered& label, std::size_t i, std::size_t j, double sp
   return std::clamp(1.5 * way(label, i, j) / speed, kQuickest, kSlowest);
 }
 
-// the cost of going over other labels from place i to place j, half of the time before sample k
+// the cost of going over other labels from place i to place j, half of the time before sample k; no more is
+// added up than `most`
 double cost_of_crossing(const Seen& at, const std::vector<double>& films, const Taken& taken, std::size_t k,
-                        std::size_t i, std::size_t j, double lasting, double point) {
+                        std::size_t i, std::size_t j, double lasting, double point, double most) {
   const double begin = (films[at[k].first] + films[at[k - 1].first] - lasting) / 2;
   std::size_t near = k;
   while (near > 0 && films[at[near].first] > begin) --near;
   double cost = 0;
   constexpr int kParts = 8;
-  for (int n = 1; n < kParts; ++n) {
+  for (int n = 1; n < kParts && cost < most; ++n) {
     const double part = double(n) / kParts, film = begin + part * lasting;
     while (near + 1 < at.size() && films[at[near + 1].first] <= film) ++near;
     const auto& [sample, label] = at[near];
@@ -232,13 +234,18 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
     const Seen& at = seen[key];
     const std::size_t n = at.front().second->places.size();
     std::vector<double> best(n, 0), now(n);
+    std::vector<std::size_t> ranked(n);
     std::vector<std::vector<int>> from(at.size(), std::vector<int>(n, 0));
     for (std::size_t k = 0; k < at.size(); ++k) {
       const auto& [sample, offered] = at[k];
       const double dt = sample + 1 < films.size() ? films[sample + 1] - films[sample] : 0.1;
       // while it is not shown a label changes its place at no cost
       const bool gap = k == 0 || at[k - 1].first + 1 < sample;
-      const auto cheapest = std::size_t(std::min_element(best.begin(), best.end()) - best.begin());
+      // those that cost least first, so that others are soon known to cost more
+      std::iota(ranked.begin(), ranked.end(), std::size_t(0));
+      std::stable_sort(ranked.begin(), ranked.end(),
+                       [&](std::size_t i, std::size_t j) { return best[i] < best[j]; });
+      const std::size_t cheapest = ranked.front();
       for (std::size_t i = 0; i < n; ++i) {
         std::size_t before = i;
         if (k > 0) {
@@ -246,14 +253,15 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
           if (gap) {
             before = cheapest, least = best[cheapest];
           } else {
-            for (std::size_t j = 0; j < n; ++j) {
+            for (const std::size_t j : ranked) {
               const double change = best[j] + kChange * point;
-              if (change >= least) continue;
+              if (change >= least) break;
               // by its length alone it may cost too much
               if (change + kWay * way(*offered, j, i) >= least) continue;
               double all = change + cost_of_way(*offered, j, i);
               if (all < least)
-                all += cost_of_crossing(at, films, taken, k, j, i, time_of_way(*offered, j, i, speed), point);
+                all += cost_of_crossing(at, films, taken, k, j, i, time_of_way(*offered, j, i, speed), point,
+                                        least - all);
               if (all < least) before = j, least = all;
             }
           }
