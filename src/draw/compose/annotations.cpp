@@ -99,62 +99,6 @@ using Seen = std::vector<std::pair<std::size_t, const Offered*>>;
 /// Of each sample the labels that are planned.
 using Taken = std::vector<std::vector<Planned>>;
 
-// the cost a second of lying on other labels at a sample, part of the time of the way from place i to place j
-double on_others(const std::vector<Planned>& others, const Offered& label, std::size_t i, std::size_t j,
-                 double part, double point) {
-  if (others.empty()) return 0;
-  const Point at = on_its_way(label.key.kind, label.anchor, label.places[i].center, label.places[j].center,
-                              part * part * (3 - 2 * part));
-  double cost = 0;
-  for (const Planned& other : others)
-    if (const double both = overlap(label, at, other); both > 0) cost += kShared * point * (1 + both);
-  return cost;
-}
-
-// how long a label takes from place i to place j, s
-double time_of_way(const Offered& label, std::size_t i, std::size_t j, double speed) {
-  return std::clamp(1.5 * way(label, i, j) / speed, kQuickest, kSlowest);
-}
-
-// the cost of going over other labels from place i to place j, half of the time before sample k; no more is
-// added up than `most`
-double cost_of_crossing(const Seen& at, const std::vector<double>& films, const Taken& taken, std::size_t k,
-                        std::size_t i, std::size_t j, double lasting, double point, double most) {
-  const double begin = (films[at[k].first] + films[at[k - 1].first] - lasting) / 2;
-  std::size_t near = k;
-  while (near > 0 && films[at[near].first] > begin) --near;
-  double cost = 0;
-  constexpr int kParts = 8;
-  for (int n = 1; n < kParts && cost < most; ++n) {
-    const double part = double(n) / kParts, film = begin + part * lasting;
-    while (near + 1 < at.size() && films[at[near + 1].first] <= film) ++near;
-    const auto& [sample, label] = at[near];
-    cost += lasting / kParts * on_others(taken[sample], *label, i, j, part, point);
-  }
-  return cost;
-}
-
-/// How long before its jump, at sample k, a label begins its way from place i to place j: so that of the time
-/// before and after it spends the least at places that cost. On its way it is at half of either.
-double best_lead(const Seen& at, const std::vector<double>& films, const Taken& taken, std::size_t k,
-                 std::size_t i, std::size_t j, double lasting, double point) {
-  const double jump = (films[at[k].first] + films[at[k - 1].first]) / 2;
-  double best = lasting / 2, least = 1e300;
-  for (const double part : {0.5, 0.75, 1.0, 0.25, 0.0}) {
-    const double begin = jump - part * lasting, end = begin + lasting;
-    double sum = 0;
-    for (const auto& [sample, offered] : at) {
-      const double film = films[sample];
-      if (film < jump - lasting || film > jump + lasting) continue;
-      const double gone = std::clamp((film - begin) / (end - begin), 0.0, 1.0);
-      sum += (1 - gone) * offered->places[i].cost + gone * offered->places[j].cost +
-             on_others(taken[sample], *offered, i, j, gone, point);
-    }
-    if (sum < 0.98 * least) least = sum, best = part * lasting;
-  }
-  return best;
-}
-
 /// Brings moves, from the first that may be brought, forward in time so that the last of them ends at
 /// `until`.
 void make_room(std::vector<LabelPlan::Move>& moves, std::size_t first, double until) {
@@ -164,6 +108,209 @@ void make_room(std::vector<LabelPlan::Move>& moves, std::size_t first, double un
     until = moves[m - 1].begin;
   }
 }
+
+/// The course of one label among those that are planned.
+class Planner {
+ public:
+  Planner(const Seen& at, const std::vector<double>& films, const Taken& taken, double point, double speed)
+      : at_(at),
+        films_(films),
+        taken_(taken),
+        point_(point),
+        speed_(speed),
+        kind_(at.front().second->key.kind) {}
+
+  /// The course of least cost. Ways take their time, which the search does not know: where one would have to
+  /// begin before the last is over, the label is planned again, more and more reluctant to go, and the course
+  /// is taken that costs least as it is gone.
+  LabelPlan::Course course() const {
+    LabelPlan::Course best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const double reluctance : {1.0, 4.0, 16.0, 64.0}) {
+      bool in_time = true;
+      LabelPlan::Course course = scheduled(places(reluctance * kChange * point_), in_time);
+      if (in_time && reluctance == 1) return course;
+      if (const double cost = spent(course); cost < least) least = cost, best = std::move(course);
+      if (in_time) break;
+    }
+    return best;
+  }
+
+ private:
+  double film(std::size_t k) const { return films_[at_[k].first]; }
+  // whether it was not shown before sample k
+  bool appears(std::size_t k) const { return at_[k - 1].first + 1 < at_[k].first; }
+  // for how long sample k stands
+  double lasting(std::size_t k) const {
+    const std::size_t sample = at_[k].first;
+    return std::clamp(sample + 1 < films_.size() ? films_[sample + 1] - films_[sample] : 0.1, 0.02, 1.0);
+  }
+
+  // the cost a second of lying on other labels at a sample
+  double on_others(std::size_t sample, const Offered& label, const Point& center) const {
+    double cost = 0;
+    for (const Planned& other : taken_[sample])
+      if (const double both = overlap(label, center, other); both > 0) cost += kShared * point_ * (1 + both);
+    return cost;
+  }
+  // the same, part of the time of the way from place i to place j
+  double on_others(std::size_t sample, const Offered& label, std::size_t i, std::size_t j,
+                   double part) const {
+    if (taken_[sample].empty()) return 0;
+    return on_others(sample, label,
+                     on_its_way(kind_, label.anchor, label.places[i].center, label.places[j].center,
+                                part * part * (3 - 2 * part)));
+  }
+
+  // the cost a second of place i at sample k
+  double standing(std::size_t k, std::size_t i) const {
+    const auto& [sample, label] = at_[k];
+    const Placing::Candidate& there = label->places[i];
+    double cost = there.cost + on_others(sample, *label, there.center);
+    for (const Planned& other : taken_[sample])
+      if (leads_through(*label, there, *other.label, other.at) ||
+          leads_through(*other.label, other.at, *label, there))
+        cost += kLedThrough * point_;
+    return cost;
+  }
+
+  // how long a label takes from place i to place j, s
+  double time_of_way(const Offered& label, std::size_t i, std::size_t j) const {
+    return std::clamp(1.5 * way(label, i, j) / speed_, kQuickest, kSlowest);
+  }
+
+  // the cost of going over other labels from place i to place j, half of the time before sample k; no more is
+  // added up than `most`
+  double crossing(std::size_t k, std::size_t i, std::size_t j, double most) const {
+    const double lasting = time_of_way(*at_[k].second, i, j);
+    const double begin = (film(k) + film(k - 1) - lasting) / 2;
+    std::size_t near = k;
+    while (near > 0 && film(near) > begin) --near;
+    double cost = 0;
+    constexpr int kParts = 8;
+    for (int n = 1; n < kParts && cost < most; ++n) {
+      const double part = double(n) / kParts;
+      while (near + 1 < at_.size() && film(near + 1) <= begin + part * lasting) ++near;
+      cost += lasting / kParts * on_others(at_[near].first, *at_[near].second, i, j, part);
+    }
+    return cost;
+  }
+
+  // at each sample the place of the course of least cost, each change at `change`
+  std::vector<std::size_t> places(double change) const {
+    const std::size_t n = at_.front().second->places.size();
+    std::vector<double> best(n, 0), now(n);
+    std::vector<std::size_t> ranked(n);
+    std::vector<std::vector<std::size_t>> from(at_.size(), std::vector<std::size_t>(n, 0));
+    for (std::size_t k = 0; k < at_.size(); ++k) {
+      const Offered& offered = *at_[k].second;
+      // those that cost least first, so that others are soon known to cost more
+      std::iota(ranked.begin(), ranked.end(), std::size_t(0));
+      std::stable_sort(ranked.begin(), ranked.end(),
+                       [&](std::size_t i, std::size_t j) { return best[i] < best[j]; });
+      for (std::size_t i = 0; i < n; ++i) {
+        std::size_t before = i;
+        double least = k > 0 ? best[i] : 0;
+        if (k > 0 && appears(k)) {
+          // while it is not shown a label changes its place at no cost
+          before = ranked.front(), least = best[before];
+        } else if (k > 0) {
+          for (const std::size_t j : ranked) {
+            const double changed = best[j] + change;
+            if (changed >= least) break;
+            // by its length alone it may cost too much
+            if (changed + kWay * way(offered, j, i) >= least) continue;
+            double all = changed + cost_of_way(offered, j, i);
+            if (all < least) all += crossing(k, j, i, least - all);
+            if (all < least) before = j, least = all;
+          }
+        }
+        from[k][i] = before;
+        now[i] = least + lasting(k) * standing(k, i);
+      }
+      best = now;
+    }
+    std::vector<std::size_t> place(at_.size());
+    place.back() = std::size_t(std::min_element(best.begin(), best.end()) - best.begin());
+    for (std::size_t k = at_.size() - 1; k > 0; --k) place[k - 1] = from[k][place[k]];
+    return place;
+  }
+
+  /// How long before its jump, at sample k, a label begins its way from place i to place j: so that of the
+  /// time before and after it spends the least at places that cost. On its way it is at half of either.
+  double best_lead(std::size_t k, std::size_t i, std::size_t j, double lasting) const {
+    const double jump = (film(k) + film(k - 1)) / 2;
+    double best = lasting / 2, least = 1e300;
+    for (const double part : {0.5, 0.75, 1.0, 0.25, 0.0}) {
+      const double begin = jump - part * lasting, end = begin + lasting;
+      double sum = 0;
+      for (std::size_t near = 0; near < at_.size(); ++near) {
+        if (film(near) < jump - lasting || film(near) > jump + lasting) continue;
+        const auto& [sample, offered] = at_[near];
+        const double gone = std::clamp((film(near) - begin) / (end - begin), 0.0, 1.0);
+        sum += (1 - gone) * offered->places[i].cost + gone * offered->places[j].cost +
+               on_others(sample, *offered, i, j, gone);
+      }
+      if (sum < 0.98 * least) least = sum, best = part * lasting;
+    }
+    return best;
+  }
+
+  // when a label goes from place to place; `in_time`: whether each way is over when the next begins
+  LabelPlan::Course scheduled(const std::vector<std::size_t>& place, bool& in_time) const {
+    LabelPlan::Course course{int(place[0]), {}};
+    double free = -1e300;   // when the last way ends
+    std::size_t shown = 0;  // the first move since it is shown
+    for (std::size_t k = 1; k < at_.size(); ++k) {
+      if (place[k] == place[k - 1]) continue;
+      LabelPlan::Move move{(film(k) + film(k - 1)) / 2, (film(k) + film(k - 1)) / 2, int(place[k])};
+      if (!appears(k)) {
+        // in the middle of its way when it would jump
+        const double lasting = time_of_way(*at_[k].second, place[k - 1], place[k]);
+        move.begin -= best_lead(k, place[k - 1], place[k], lasting);
+        move.end = move.begin + lasting;
+        make_room(course.moves, shown, move.begin);
+        if (move.begin < free) {
+          // the last way cannot be over sooner
+          free = shown < course.moves.size() ? course.moves.back().end : free;
+          in_time = in_time && move.begin >= free;
+          if (move.begin < free) move.end += free - move.begin, move.begin = free;
+        }
+      } else {
+        if (free > move.begin)
+          course.moves.back().end = course.moves.back().begin =
+              std::min(course.moves.back().begin, film(k - 1));
+        shown = course.moves.size() + 1;
+      }
+      free = move.end;
+      course.moves.push_back(move);
+    }
+    return course;
+  }
+
+  // what a course costs as it is gone, the changes too
+  double spent(const LabelPlan::Course& course) const {
+    double sum = kChange * point_ * double(course.moves.size());
+    for (std::size_t k = 0; k < at_.size(); ++k) {
+      const auto& [sample, label] = at_[k];
+      double own = label->places[std::size_t(course.first)].cost;
+      for (const LabelPlan::Move& move : course.moves) {
+        if (film(k) <= move.begin) break;
+        const double gone = film(k) >= move.end ? 1 : (film(k) - move.begin) / (move.end - move.begin);
+        own += gone * (label->places[std::size_t(move.to)].cost - own);
+      }
+      const Point center = place_of_course(course, kind_, label->anchor, label->places, film(k)).first.center;
+      sum += lasting(k) * (own + on_others(sample, *label, center));
+    }
+    return sum;
+  }
+
+  const Seen& at_;
+  const std::vector<double>& films_;
+  const Taken& taken_;
+  double point_, speed_;
+  WordKey::Kind kind_;
+};
 
 // points of a curve that are needed for it to be no farther than `tolerance` from the line through them, by
 // Douglas and Peucker
@@ -232,98 +379,15 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
   Taken taken(samples.size());
   for (const WordKey& key : order) {
     const Seen& at = seen[key];
-    const std::size_t n = at.front().second->places.size();
-    std::vector<double> best(n, 0), now(n);
-    std::vector<std::size_t> ranked(n);
-    std::vector<std::vector<int>> from(at.size(), std::vector<int>(n, 0));
-    for (std::size_t k = 0; k < at.size(); ++k) {
-      const auto& [sample, offered] = at[k];
-      const double dt = sample + 1 < films.size() ? films[sample + 1] - films[sample] : 0.1;
-      // while it is not shown a label changes its place at no cost
-      const bool gap = k == 0 || at[k - 1].first + 1 < sample;
-      // those that cost least first, so that others are soon known to cost more
-      std::iota(ranked.begin(), ranked.end(), std::size_t(0));
-      std::stable_sort(ranked.begin(), ranked.end(),
-                       [&](std::size_t i, std::size_t j) { return best[i] < best[j]; });
-      const std::size_t cheapest = ranked.front();
-      for (std::size_t i = 0; i < n; ++i) {
-        std::size_t before = i;
-        if (k > 0) {
-          double least = best[i];
-          if (gap) {
-            before = cheapest, least = best[cheapest];
-          } else {
-            for (const std::size_t j : ranked) {
-              const double change = best[j] + kChange * point;
-              if (change >= least) break;
-              // by its length alone it may cost too much
-              if (change + kWay * way(*offered, j, i) >= least) continue;
-              double all = change + cost_of_way(*offered, j, i);
-              if (all < least)
-                all += cost_of_crossing(at, films, taken, k, j, i, time_of_way(*offered, j, i, speed), point,
-                                        least - all);
-              if (all < least) before = j, least = all;
-            }
-          }
-          now[i] = least;
-        } else {
-          now[i] = 0;
-        }
-        from[k][i] = int(before);
-        const Placing::Candidate& there = offered->places[i];
-        double cost = there.cost;
-        for (const Planned& other : taken[sample]) {
-          if (const double both = overlap(*offered, there.center, other); both > 0)
-            cost += kShared * point * (1 + both);
-          if (leads_through(*offered, there, *other.label, other.at) ||
-              leads_through(*other.label, other.at, *offered, there))
-            cost += kLedThrough * point;
-        }
-        now[i] += std::clamp(dt, 0.02, 1.0) * cost;
-      }
-      best = now;
-    }
-    std::vector<int> place(at.size());
-    place.back() = int(std::min_element(best.begin(), best.end()) - best.begin());
-    for (std::size_t k = at.size() - 1; k > 0; --k) place[k - 1] = from[k][std::size_t(place[k])];
-
-    LabelPlan::Course course{place[0], {}};
-    double free = -1e300;   // when the last way ends
-    std::size_t shown = 0;  // the first move since it is shown
-    for (std::size_t k = 1; k < at.size(); ++k) {
-      if (place[k] == place[k - 1]) continue;
-      const double here = films[at[k].first], before = films[at[k - 1].first];
-      LabelPlan::Move move{(here + before) / 2, (here + before) / 2, place[k]};
-      if (at[k - 1].first + 1 == at[k].first) {
-        // in the middle of its way when it would jump
-        const auto from_place = std::size_t(place[k - 1]), to_place = std::size_t(place[k]);
-        const double lasting = time_of_way(*at[k].second, from_place, to_place, speed);
-        move.begin -= best_lead(at, films, taken, k, from_place, to_place, lasting, point);
-        move.end = move.begin + lasting;
-        make_room(course.moves, shown, move.begin);
-        if (move.begin < free) {
-          // the last way cannot be over sooner
-          free = shown < course.moves.size() ? course.moves.back().end : free;
-          if (move.begin < free) move.end += free - move.begin, move.begin = free;
-        }
-      } else {
-        if (free > move.begin)
-          course.moves.back().end = course.moves.back().begin = std::min(course.moves.back().begin, before);
-        shown = course.moves.size() + 1;
-      }
-      free = move.end;
-      course.moves.push_back(move);
-    }
+    LabelPlan::Course course = Planner(at, films, taken, point, speed).course();
     course.covers = !course.moves.empty();
-    for (std::size_t k = 0; k < at.size(); ++k)
-      course.covers = course.covers || !at[k].second->places[std::size_t(place[k])].clear;
     std::size_t covering = 0;
     for (const auto& [sample, offered] : at) {
-      const auto [stands, led] =
-          place_of_course(course, key.kind, offered->anchor, offered->places, films[sample]);
-      const auto& there = stands;
+      const Placing::Candidate stands =
+          place_of_course(course, key.kind, offered->anchor, offered->places, films[sample]).first;
+      course.covers = course.covers || !stands.clear;
       covering += std::any_of(taken[sample].begin(), taken[sample].end(), [&](const Planned& other) {
-        return overlap(*offered, there.center, other) > 0;
+        return overlap(*offered, stands.center, other) > 0;
       });
       taken[sample].push_back({offered, stands});
     }

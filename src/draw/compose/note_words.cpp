@@ -444,8 +444,17 @@ Hold Notes::hold(const Word& word, const Point& center) {
 void Notes::offer_places() {
   for (Word& word : words_) {
     Offered offered{word.key, size(word.set), word.anchor, std::move(word.places), word.arrow};
+    // what leaves the page takes its words along, wherever they stand
+    const Rect page = view_.window();
+    const bool gone = word.anchor.x() < page.x || word.anchor.x() > page.x + page.width ||
+                      word.anchor.y() < page.y || word.anchor.y() > page.y + page.height;
     if (!how_.ranges)
       for (Placing::Candidate& each : offered.places) {
+        if (gone) {
+          each.cost = 0;
+          continue;
+        }
+        each.center = on_page(word, each.center);
         const double cost = placing_.cost(offered.size, each);
         each.clear = cost <= each.cost;
         // a name has room all around its body: it goes out of the way sooner

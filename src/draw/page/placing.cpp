@@ -114,13 +114,13 @@ Rect Placing::rect_of(const Point& size, const Candidate& c) const {
 }
 
 double Placing::cost(const Point& size, const Candidate& candidate) const {
-  return candidate.cost + cost(rect_of(size, candidate));
+  return candidate.cost + lines(rect_of(size, candidate));
 }
 
 Placing::Candidate Placing::place(const Point& size, const std::vector<Candidate>& candidates) {
-  const auto best =
-      std::min_element(candidates.begin(), candidates.end(),
-                       [&](const Candidate& a, const Candidate& b) { return cost(size, a) < cost(size, b); });
+  const auto all = [&](const Candidate& each) { return each.cost + cost(rect_of(size, each)); };
+  const auto best = std::min_element(candidates.begin(), candidates.end(),
+                                     [&](const Candidate& a, const Candidate& b) { return all(a) < all(b); });
   taken_.push_back(rect_of(size, *best));
   return *best;
 }

@@ -29,7 +29,8 @@ class Placing {
   };
   /// The centre of a label of `size` that lies best; it is taken from then on.
   Candidate place(const Point& size, const std::vector<Candidate>& candidates);
-  /// The whole cost of a candidate, by what is to be avoided; labels that have a place already do not count.
+  /// The cost of a candidate by the lines and areas that are to be avoided, and its own; neither labels that
+  /// have a place already nor the page's edge count.
   double cost(const Point& size, const Candidate& candidate) const;
 
   /// Places around a point, and farther off with a leader; beside an arrow.
