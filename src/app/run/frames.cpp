@@ -6,7 +6,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "app/console/waiting.h"
 #include "media/error.h"
@@ -118,8 +117,11 @@ bool Frames::next(media::Image& image) {
 
 std::string file_bytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(file)), {});
-  if (!file.good() && !file.eof()) throw media::Error(path + ": cannot be read");
+  if (!file) throw media::Error(path + ": cannot be read");
+  std::string bytes;
+  char piece[1 << 16];
+  while (file.read(piece, sizeof piece) || file.gcount() > 0) bytes.append(piece, std::size_t(file.gcount()));
+  if (file.bad()) throw media::Error(path + ": cannot be read");
   return bytes;
 }
 
