@@ -104,7 +104,8 @@ Painter::Painter(const Functions& gl, int width, int height)
 
 Painter::~Painter() { gl_.DeleteTextures(1, &edge_texture_); }
 
-void Painter::paint(const draw::List& list, draw::Color ground, bool transparent, Damage& damage) {
+void Painter::paint(const draw::List& list, Reach from, Reach to, draw::Color ground, bool transparent,
+                    Damage& damage) {
   ground_ = ground, transparent_ = transparent;
   runs_.clear();
   discs_.clear();
@@ -114,7 +115,12 @@ void Painter::paint(const draw::List& list, draw::Color ground, bool transparent
   quadrangles_.clear();
   edges_.clear();
   glyphs_.clear();
-  for (const draw::Batch& batch : list.batches) encode(list, batch, damage);
+  for (int n = from.batches; n < int(list.batches.size()) && Reach{n, 0} < to; ++n) {
+    draw::Batch part = list.batches[std::size_t(n)];
+    if (n == to.batches) part.end = part.begin + to.things;
+    if (n == from.batches) part.begin += from.things;
+    encode(list, part, damage);
+  }
 
   upload();
 

@@ -8,6 +8,7 @@
 #include "gl/buffer.h"
 #include "gl/damage.h"
 #include "gl/glyphs.h"
+#include "gl/head.h"
 #include "gl/program.h"
 #include "gl/strip.h"
 
@@ -20,7 +21,13 @@ class Painter {
 
   /// `ground`: the colour with which darkened and lightened strokes are mixed; the colours are premultiplied
   /// on the way, and so is the framebuffer. Marks the area that it draws on.
-  void paint(const draw::List& list, draw::Color ground, bool transparent, Damage& damage);
+  void paint(const draw::List& list, draw::Color ground, bool transparent, Damage& damage) {
+    paint(list, {}, end_of(list), ground, transparent, damage);
+  }
+  /// The same of the things of a list from `from` to `to`: one part after the other gives the pixels of the
+  /// whole.
+  void paint(const draw::List& list, Reach from, Reach to, draw::Color ground, bool transparent,
+             Damage& damage);
 
  private:
   // instances, as the shaders read them

@@ -73,6 +73,8 @@ auto drawn_of(List& list) {
                   list.points, list.clips);
 }
 
+constexpr int kSteady = 4;  // pictures in which the head of a list is the same before it is laid
+
 /// Holds a context current while it draws, and leaves the thread free of it after.
 class Current {
  public:
@@ -94,7 +96,7 @@ struct Renderer::Impl {
   Functions gl;
   std::string version, device;
   std::string trouble;     // the last GL error of a debug build
-  Canvas backdrop, frame;  // ground and still list; the picture
+  Canvas backdrop, frame;  // ground, still list and what is laid on it; the picture
   Painter painter;
   std::optional<SolidPainter> solid_painter;  // from the first picture in space on
   Damage damage;                              // what the last picture drew over the backdrop
@@ -102,6 +104,14 @@ struct Renderer::Impl {
   draw::Color ground;
   bool transparent = false;
   std::shared_ptr<const draw::List> still;
+  /// The head of what moves that has not moved for some time: it is drawn once, on the backdrop.
+  struct Laid {
+    Reach reach;         // of the last list
+    Damage damage;       // where
+    Reach steady;        // the head that was the same
+    int pictures = 0;    // in so many
+    int wait = kSteady;  // before it is laid
+  } laid;
   draw::List last;                   // what moved in the last picture
   bool last_flat = false;            // whether that is known, and was all of it
   media::Image image;                // what was read last
@@ -116,7 +126,8 @@ struct Renderer::Impl {
         backdrop(gl, w, h),
         frame(gl, w, h),
         painter(gl, w, h),
-        damage(w, h) {
+        damage(w, h),
+        laid{.reach = {}, .damage = Damage(w, h), .steady = {}} {
     version = gl.string(GL_VERSION);
     device = gl.string(GL_RENDERER) + ", " + context->backend();
 #ifndef NDEBUG
@@ -140,6 +151,7 @@ struct Renderer::Impl {
   }
 
   void draw_backdrop(const draw::Picture& picture);
+  void lay(const draw::Picture& picture, Reach same);
   void restore();
   void read(const Damage::Rect& rect);
 };
@@ -154,6 +166,23 @@ void Renderer::Impl::draw_backdrop(const draw::Picture& picture) {
   gl.Clear(GL_COLOR_BUFFER_BIT);
   Damage none(width, height);
   if (still) painter.paint(*still, ground, transparent, none);
+}
+
+/// Keeps the head of what moves on the backdrop, of which `same` is as in the last picture.
+void Renderer::Impl::lay(const draw::Picture& picture, Reach same) {
+  if (same < laid.reach) {
+    // some of it moves again; the next time it is waited longer
+    draw_backdrop(picture);
+    damage.add(laid.damage);
+    laid = {.reach = {}, .damage = Damage(width, height), .steady = {}, .wait = 2 * laid.wait};
+  }
+  laid.steady = laid.pictures == 0 ? same : std::min(laid.steady, same);
+  if (++laid.pictures < laid.wait) return;
+  laid.pictures = 0;
+  if (laid.steady <= laid.reach) return;
+  backdrop.bind();
+  painter.paint(picture.moving, laid.reach, laid.steady, ground, transparent, laid.damage);
+  laid.reach = laid.steady;
 }
 
 void Renderer::Impl::restore() {
@@ -212,6 +241,7 @@ const media::Image& Renderer::draw(const draw::Picture& picture) {
     my.changed.clear();
     return my.image;
   }
+  const Reach same = same_backdrop && flat && my.last_flat ? common_head(my.last, picture.moving) : Reach();
   my.last_flat = false;
 
   const Current current(*my.context);
@@ -221,7 +251,9 @@ const media::Image& Renderer::draw(const draw::Picture& picture) {
   if (!same_backdrop) {
     my.drawn = false;
     my.draw_backdrop(picture);
+    my.laid = {.reach = {}, .damage = Damage(my.width, my.height), .steady = {}};
   }
+  my.lay(picture, same);
 
   // moving things, over the rest of the backdrop from the last picture
   const bool anew = !my.drawn;
@@ -233,7 +265,8 @@ const media::Image& Renderer::draw(const draw::Picture& picture) {
     my.solid_painter->paint(*solids, my.frame.framebuffer(), my.damage);
   }
   my.frame.bind();
-  my.painter.paint(picture.moving, picture.ground, picture.transparent, my.damage);
+  my.painter.paint(picture.moving, my.laid.reach, end_of(picture.moving), picture.ground, picture.transparent,
+                   my.damage);
 
   // read the pixels that either picture drew on
   my.image.width = my.width;

@@ -171,6 +171,101 @@ TEST(Painting, OnlyWhatChangesIsDrawnAndReadAndThatIsAll) {
   EXPECT_LT(read, 0.6);
 }
 
+// a thing of any kind, the same for the same seed
+void add_any(draw::List& list, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto uniform = [&](double from, double to) {
+    return std::uniform_real_distribution<>(from, to)(random);
+  };
+  const auto place = [&] { return draw::Point(uniform(0, 1900), uniform(0, 1080)); };
+  const Color ink(std::uint8_t(uniform(0, 256)), std::uint8_t(uniform(0, 256)), std::uint8_t(uniform(0, 256)),
+                  std::uint8_t(uniform(60, 256)));
+  const bool clipped = uniform(0, 1) < 0.2;
+  if (clipped) list.clip({uniform(0, 900), uniform(0, 500), 800, 500});
+  if (uniform(0, 1) < 0.2) {
+    list.halo(true);
+    list.add(draw::Disc{place(), uniform(10, 200), 0, kGround, kGround});
+    list.halo(false);
+  }
+  switch (int(uniform(0, 5))) {
+    case 0:
+      list.add(draw::Disc{place(), uniform(2, 200), uniform(0, 9), ink, kBlue});
+      break;
+    case 1: {
+      const double angle = uniform(0, 7);
+      draw::Box box;
+      box.center = place(), box.x_axis = {std::cos(angle), std::sin(angle)};
+      box.half = {uniform(1, 400), uniform(1, 100)}, box.line = uniform(0, 6);
+      box.fill = ink, box.outline = kBlue;
+      list.add(box);
+      break;
+    }
+    case 2:
+      list.add({{place(), 8, ink}, {place(), 30, ink}, {place(), 8, ink}}, draw::Cap::round,
+               uniform(0, 1) < 0.5 ? draw::Blend::darken : draw::Blend::over);
+      break;
+    case 3:
+      list.add({place(), place(), place()}, ink);
+      break;
+    default:
+      list.add(draw::Text{place(), draw::Align::left, {{"word", draw::Face::bold, 60, ink}}});
+  }
+  if (clipped) list.unclip();
+}
+
+// What has stayed for some pictures is drawn once, until it changes: other things come before it, it goes, or
+// there is another still list.
+TEST(Painting, WhatStaysBelowWhatMovesIsDrawnOnceToTheSamePixels) {
+  for (const bool transparent : {false, true}) {
+    std::mt19937 random(3);
+    const auto below = [&](int n) { return int(random() % unsigned(n)); };
+    Renderer renderer(640, 360);
+    std::vector<unsigned> things{1, 2, 3, 4, 5, 6, 7, 8};
+    auto still = std::make_shared<draw::List>();
+    media::Image before;
+    int staying = 0;
+    for (int k = 0; k < 150; ++k) {
+      if (below(12) == 0) things.insert(things.begin() + below(int(things.size())), random());
+      if (below(14) == 0) things.erase(things.begin() + below(int(things.size())));
+      if (below(60) == 0) still = std::make_shared<draw::List>(), add_any(*still, random());
+      draw::Picture picture;
+      picture.aspect = 640.0 / 360;
+      picture.ground = kGround;
+      picture.transparent = transparent;
+      picture.still = still;
+      for (const unsigned thing : things) add_any(picture.moving, thing);
+      for (int i = 0; i < 3; ++i) add_any(picture.moving, random());
+      const media::Image& now = renderer.draw(picture);
+      Renderer fresh(640, 360);
+      ASSERT_EQ(now, drawn(fresh, picture)) << k;
+      if (const auto* changed = renderer.changed())
+        for (const media::Rect& rect : *changed)
+          for (int y = rect.y; y < rect.y + rect.height; ++y)
+            std::copy_n(now.row(y) + 4 * rect.x, 4 * rect.width, before.row(y) + 4 * rect.x);
+      else
+        before = now;
+      ASSERT_EQ(before, now) << k;
+    }
+    // a large thing that stays, and a small one that moves over it: in the end the small one alone is read
+    for (int k = 0; k < 200 && staying < 3; ++k) {
+      draw::Picture picture;
+      picture.aspect = 640.0 / 360;
+      picture.ground = kGround;
+      picture.transparent = transparent;
+      picture.moving.add({{0, 0}, {1800, 0}, {900, 1000}}, kRed);
+      picture.moving.add(draw::Disc{{400.0 + k, 300}, 20, 0, kBlue, kBlue});
+      const media::Image& now = renderer.draw(picture);
+      Renderer fresh(640, 360);
+      ASSERT_EQ(now, drawn(fresh, picture)) << k;
+      double read = 0;
+      if (const auto* changed = renderer.changed())
+        for (const media::Rect& rect : *changed) read += double(rect.width) * rect.height / (640 * 360);
+      staying = renderer.changed() && read < 0.02 ? staying + 1 : 0;
+    }
+    EXPECT_EQ(staying, 3);
+  }
+}
+
 // Halos and plates cover what lies below with the ground's colour: where there is no ground they are holes,
 // so that over any slide they are of the slide's colour. Other things of that colour are not.
 TEST(Painting, HalosAreHolesWhereThereIsNoGround) {

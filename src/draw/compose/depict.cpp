@@ -29,6 +29,12 @@ constexpr int kMarks = 100;  // layers up to there are of bodies and what ties t
 
 bool is_point(const sim::SceneInfo::Body& body) { return body.kind == sim::ShapeKind::point && !body.bare; }
 
+// the bodies with flat sides
+void draw_flats(const Stage& stage, const View& view, const sim::Snapshot& now, Rank rank, List& list) {
+  draw_boxes(stage, view, now, rank, list);
+  draw_polygons(stage, view, now, rank, list);
+}
+
 // bodies, what ties them, their own arrows and names
 void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   int layer = 0;
@@ -44,17 +50,14 @@ void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, 
     draw_arms(stage, view, now, list);
   });
   draw([&] { draw_springs(stage, view, now, false, list); });
-  draw([&] { draw_boxes(stage, view, now, list); });
-  draw([&] { draw_polygons(stage, view, now, list); });
+  draw([&] { draw_flats(stage, view, now, Rank::fixed, list); });
+  draw([&] { draw_flats(stage, view, now, Rank::free, list); });
   draw([&] { draw_springs(stage, view, now, true, list); });
   draw([&] { draw_rods(stage, view, now, list); });
   draw([&] { draw_rounds(stage, view, now, list); });
   draw([&] { draw_gears(stage, view, now, list); });
   draw([&] { draw_racks(stage, view, now, list); });
-  draw([&] {
-    draw_boxes(stage, view, now, list, true);
-    draw_polygons(stage, view, now, list, true);
-  });
+  draw([&] { draw_flats(stage, view, now, Rank::arm, list); });
   draw([&] { draw_pulleys(stage, view, now, list); });
   draw([&] { draw_pins(stage, view, now, list); });
   draw([&] { draw_contacts(stage, view, now, list); });
@@ -453,11 +456,9 @@ void Illustrator::ghosts(const sim::Snapshot& then, double strength, List& list,
   std::erase_if(faded.polygons, still);
   std::erase_if(faded.rounds, still);
   if (faded.layout.clipped) list.clip(view.window);
-  draw_boxes(faded, view, then, list);
-  draw_polygons(faded, view, then, list);
+  draw_flats(faded, view, then, Rank::free, list);
   draw_rounds(faded, view, then, list);
-  draw_boxes(faded, view, then, list, true);
-  draw_polygons(faded, view, then, list, true);
+  draw_flats(faded, view, then, Rank::arm, list);
   if (faded.layout.clipped) list.unclip();
 }
 

@@ -41,11 +41,11 @@ Color fill_of(const Paint& paint, double half, double weight) {
   return mix(paint.fill, paint.small, std::min(kSmallFill * (1 - size), 1.0));
 }
 
-void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, List& list, bool arms) {
+void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, Rank rank, List& list) {
   const double weight = stage.layout.weight;
   list.boxes.reserve(stage.boxes.size());
   for (int i : stage.boxes) {
-    if (bool(stage.arm[i]) != arms) continue;
+    if (stage.rank(i) != rank) continue;
     const sim::Snapshot::Body& body = now.bodies[i];
     const Point half = view.scale * stage.cast.bodies[i].half.head<2>();
     const Point center = view.page(body.position);

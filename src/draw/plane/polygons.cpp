@@ -117,10 +117,10 @@ std::vector<std::uint64_t> seams_of(const sim::SceneInfo::Body& body) {
   return seams;
 }
 
-void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& now, List& list, bool arms) {
+void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& now, Rank rank, List& list) {
   const double weight = stage.layout.weight;
   for (int i : stage.polygons) {
-    if (bool(stage.arm[i]) != arms) continue;
+    if (stage.rank(i) != rank) continue;
     const sim::SceneInfo::Body& info = stage.cast.bodies[i];
     const sim::Snapshot::Body& body = now.bodies[i];
     const Paint& paint = stage.paints[i];

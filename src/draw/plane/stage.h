@@ -15,6 +15,10 @@
 
 namespace obscura::draw {
 
+/// Which of the bodies with flat sides: what is fixed lies below what moves, and the arms of gears lie over
+/// both.
+enum class Rank : std::uint8_t { fixed, free, arm };
+
 /// Data common to the pictures of one run, and the layers they are made of.
 struct Stage {
   sim::SceneInfo cast;
@@ -43,6 +47,11 @@ struct Stage {
 
   /// Whether a body has points of its own to be held at.
   bool solid(int body) const { return body >= 0 && cast.bodies[body].turns; }
+
+  Rank rank(int body) const {
+    const auto i = std::size_t(body);
+    return cast.bodies[i].fixed ? Rank::fixed : arm[i] ? Rank::arm : Rank::free;
+  }
 };
 
 /// For each part of a body, the edges that lie within another part, see draw/plane/polygons.cpp.
@@ -133,11 +142,8 @@ void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now
 /// Arrows at the picture's edge towards bodies with trails that have left it.
 void draw_gone(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
-/// `arms`: those of Stage::arm, else all others.
-void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, List& list,
-                bool arms = false);
-void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& now, List& list,
-                   bool arms = false);
+void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, Rank rank, List& list);
+void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& now, Rank rank, List& list);
 void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
