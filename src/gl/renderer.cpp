@@ -170,19 +170,23 @@ void Renderer::Impl::draw_backdrop(const draw::Picture& picture) {
 
 /// Keeps the head of what moves on the backdrop, of which `same` is as in the last picture.
 void Renderer::Impl::lay(const draw::Picture& picture, Reach same) {
+  const auto put = [&](Reach reach) {
+    backdrop.bind();
+    painter.paint(picture.moving, laid.reach, reach, ground, transparent, laid.damage);
+    laid.reach = reach;
+  };
   if (same < laid.reach) {
-    // some of it moves again; the next time it is waited longer
+    // some of it moves again: what lies below that stays, what lies above is waited for longer
     draw_backdrop(picture);
     damage.add(laid.damage);
     laid = {.reach = {}, .damage = Damage(width, height), .steady = {}, .wait = 2 * laid.wait};
+    put(same);
   }
   laid.steady = laid.pictures == 0 ? same : std::min(laid.steady, same);
   if (++laid.pictures < laid.wait) return;
   laid.pictures = 0;
   if (laid.steady <= laid.reach) return;
-  backdrop.bind();
-  painter.paint(picture.moving, laid.reach, laid.steady, ground, transparent, laid.damage);
-  laid.reach = laid.steady;
+  put(laid.steady);
 }
 
 void Renderer::Impl::restore() {
@@ -259,6 +263,7 @@ const media::Image& Renderer::draw(const draw::Picture& picture) {
   const bool anew = !my.drawn;
   Damage changed = my.damage;
   my.restore();
+  my.drawn = false;  // until it is whole
   my.frame.bind();
   for (const auto& solids : picture.solids) {
     if (!my.solid_painter) my.solid_painter.emplace(my.gl, my.width, my.height);
@@ -280,10 +285,10 @@ const media::Image& Renderer::draw(const draw::Picture& picture) {
 
   const GLenum error = my.gl.GetError();
   if (error != GL_NO_ERROR || !my.trouble.empty()) {
-    my.drawn = false;
     throw Error("OpenGL error " + std::to_string(error) + " while drawing" +
                 (my.trouble.empty() ? "" : ": " + std::exchange(my.trouble, "")));
   }
+  my.drawn = true;
   my.last_flat = flat;
   if (flat) drawn_of(my.last) = drawn_of(picture.moving);
   return my.image;

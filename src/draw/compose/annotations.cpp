@@ -162,11 +162,10 @@ class Planner {
                                 part * part * (3 - 2 * part)));
   }
 
-  // the cost a second of place i at sample k
-  double standing(std::size_t k, std::size_t i) const {
+  // the cost a second of standing somewhere at sample k, as others are there
+  double among(std::size_t k, const Placing::Candidate& there) const {
     const auto& [sample, label] = at_[k];
-    const Placing::Candidate& there = label->places[i];
-    double cost = there.cost + on_others(sample, *label, there.center);
+    double cost = on_others(sample, *label, there.center);
     for (const Planned& other : taken_[sample])
       if (leads_through(*label, there, *other.label, other.at) ||
           leads_through(*other.label, other.at, *label, there))
@@ -226,7 +225,7 @@ class Planner {
           }
         }
         from[k][i] = before;
-        now[i] = least + lasting(k) * standing(k, i);
+        now[i] = least + lasting(k) * (offered.places[i].cost + among(k, offered.places[i]));
       }
       best = now;
     }
@@ -288,19 +287,26 @@ class Planner {
     return course;
   }
 
-  // what a course costs as it is gone, the changes too
+  // what a course costs as it is gone, the changes and the lengths of its ways too
   double spent(const LabelPlan::Course& course) const {
-    double sum = kChange * point_ * double(course.moves.size());
+    double sum = 0;
+    int from = course.first;
+    for (const LabelPlan::Move& move : course.moves) {
+      std::size_t k = 0;
+      while (k + 1 < at_.size() && film(k) < move.begin) ++k;
+      sum += kChange * point_ + cost_of_way(*at_[k].second, std::size_t(from), std::size_t(move.to));
+      from = move.to;
+    }
     for (std::size_t k = 0; k < at_.size(); ++k) {
-      const auto& [sample, label] = at_[k];
-      double own = label->places[std::size_t(course.first)].cost;
+      const Offered& label = *at_[k].second;
+      double own = label.places[std::size_t(course.first)].cost;
       for (const LabelPlan::Move& move : course.moves) {
         if (film(k) <= move.begin) break;
         const double gone = film(k) >= move.end ? 1 : (film(k) - move.begin) / (move.end - move.begin);
-        own += gone * (label->places[std::size_t(move.to)].cost - own);
+        own += gone * (label.places[std::size_t(move.to)].cost - own);
       }
-      const Point center = place_of_course(course, kind_, label->anchor, label->places, film(k)).first.center;
-      sum += lasting(k) * (own + on_others(sample, *label, center));
+      sum += lasting(k) *
+             (own + among(k, place_of_course(course, kind_, label.anchor, label.places, film(k)).first));
     }
     return sum;
   }

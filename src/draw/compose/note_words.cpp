@@ -442,19 +442,21 @@ Hold Notes::hold(const Word& word, const Point& center) {
 
 // the places where words could stand, each with its cost
 void Notes::offer_places() {
+  const auto seen = [page = view_.window()](const Point& size, const Point& center) {
+    const Point low = center - size / 2, high = center + size / 2;
+    return high.x() > page.x && low.x() < page.x + page.width && high.y() > page.y &&
+           low.y() < page.y + page.height;
+  };
   for (Word& word : words_) {
     Offered offered{word.key, size(word.set), word.anchor, std::move(word.places), word.arrow};
-    // what leaves the page takes its words along, wherever they stand
-    const Rect page = view_.window();
-    const bool gone = word.anchor.x() < page.x || word.anchor.x() > page.x + page.width ||
-                      word.anchor.y() < page.y || word.anchor.y() > page.y + page.height;
     if (!how_.ranges)
       for (Placing::Candidate& each : offered.places) {
-        if (gone) {
-          each.cost = 0;
+        each.center = on_page(word, each.center);
+        // words that have left the page with what they name cover nothing
+        if (!seen(offered.size, each.center)) {
+          each.cost = 0, each.clear = true;
           continue;
         }
-        each.center = on_page(word, each.center);
         const double cost = placing_.cost(offered.size, each);
         each.clear = cost <= each.cost;
         // a name has room all around its body: it goes out of the way sooner

@@ -1,6 +1,6 @@
 // The cost of a place: the length of the lines that run through its rectangle, each by its weight, the area
-// it shares with other words, and its distance from the usual place. A place that leaves the page is
-// excluded.
+// it shares with other words, and its distance from the usual place. Of places that are chosen here, those
+// that leave the page are excluded.
 
 #include "draw/page/placing.h"
 
