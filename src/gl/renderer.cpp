@@ -73,7 +73,8 @@ auto drawn_of(List& list) {
                   list.points, list.clips);
 }
 
-constexpr int kSteady = 4;  // pictures in which the head of a list is the same before it is laid
+constexpr int kSteady = 4;      // pictures in which the head of a list is the same before it is laid
+constexpr int kLongest = 1024;  // the same of what moved again and again
 
 /// Holds a context current while it draws, and leaves the thread free of it after.
 class Current {
@@ -106,11 +107,12 @@ struct Renderer::Impl {
   std::shared_ptr<const draw::List> still;
   /// The head of what moves that has not moved for some time: it is drawn once, on the backdrop.
   struct Laid {
-    Reach reach;         // of the last list
-    Damage damage;       // where
-    Reach steady;        // the head that was the same
-    int pictures = 0;    // in so many
-    int wait = kSteady;  // before it is laid
+    Reach reach;          // of the last list
+    Damage damage;        // where
+    Reach steady;         // the head that was the same
+    int pictures = 0;     // in so many
+    int wait = kSteady;   // before it is laid
+    int since = kSteady;  // pictures since some of it moved again
   } laid;
   draw::List last;                   // what moved in the last picture
   bool last_flat = false;            // whether that is known, and was all of it
@@ -176,12 +178,16 @@ void Renderer::Impl::lay(const draw::Picture& picture, Reach same) {
     laid.reach = reach;
   };
   if (same < laid.reach) {
-    // some of it moves again: what lies below that stays, what lies above is waited for longer
+    // Some of it moves again: what lies below that stays, what lies above is waited for longer. Where more
+    // begins to move soon after, as in a pile that is struck, all is waited for.
+    const bool soon = laid.since < laid.wait;
     draw_backdrop(picture);
     damage.add(laid.damage);
-    laid = {.reach = {}, .damage = Damage(width, height), .steady = {}, .wait = 2 * laid.wait};
-    put(same);
+    const int wait = std::min(2 * laid.wait, kLongest);
+    laid = {.reach = {}, .damage = Damage(width, height), .steady = {}, .wait = wait, .since = 0};
+    if (!soon) put(same);
   }
+  laid.since = std::min(laid.since + 1, kLongest);
   laid.steady = laid.pictures == 0 ? same : std::min(laid.steady, same);
   if (++laid.pictures < laid.wait) return;
   laid.pictures = 0;

@@ -248,6 +248,22 @@ TEST(Painting, WhatStaysBelowWhatMovesIsDrawnOnceToTheSamePixels) {
         before = now;
       ASSERT_EQ(before, now) << k;
     }
+    // a pile that is struck: one thing after another begins to move, the uppermost first
+    const auto piled = std::make_shared<draw::List>();
+    for (int k = 0; k < 60; ++k) {
+      draw::Picture picture;
+      picture.aspect = 640.0 / 360;
+      picture.ground = kGround;
+      picture.transparent = transparent;
+      picture.still = piled;
+      for (int i = 0; i < 40; ++i) {
+        const double fallen = 3 * std::max(0, k - 10 - (40 - i));
+        picture.moving.add(draw::Disc{{40.0 * i + fallen, 500}, 30, 4, kBlue, kRed});
+      }
+      const media::Image& now = renderer.draw(picture);
+      Renderer fresh(640, 360);
+      ASSERT_EQ(now, drawn(fresh, picture)) << k;
+    }
     // a large thing that stays, and a small one that moves over it: in the end the small one alone is read
     for (int k = 0; k < 100 && staying < 3; ++k) {
       draw::Picture picture;
