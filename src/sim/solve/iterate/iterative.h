@@ -53,7 +53,8 @@ class Iterative : public ContactSolver<D> {
   virtual bool find_contacts(StepPart<D> step) = 0;
   /// Wakes what contacts reach; in the first step sets at rest what begins in equilibrium.
   virtual void update_sleep(StepPart<D> step) = 0;
-  /// The largest closing speed of what touches or may within h s, in widths of the narrower body, 1/s.
+  /// The closing rate of what touches or may within h s that says how many substeps the step has, in widths
+  /// of the narrower body, 1/s.
   virtual double closing_rate(double h) const = 0;
 
   /// Features where bodies have moved since they were found.

@@ -65,10 +65,10 @@ void SpaceIterative::update_sleep(StepPart<D> step) {
   if (changed) prepare(state, step.t, step.h), find(step);
 }
 
-// how fast those close that touch, or may within h s: the most, in widths of the narrower body, 1/s
+// how fast those close that touch, or may within h s, in widths of the narrower body, 1/s
 double SpaceIterative::closing_rate(double h) const {
   const int n = int(model_.bodies.size());
-  double most = 0;
+  rates_.clear();
   for (const ContactConstraint& touch : touches_) {
     const Vec<D> u = slip(touch);
     double closes = -touch.n.dot(u);
@@ -81,9 +81,10 @@ double SpaceIterative::closing_rate(double h) const {
     }
     // what is moved, as fast as it becomes within the step
     if (!quicker_.empty()) closes += quicker_[touch.a] + (touch.b < n ? quicker_[touch.b] : 0);
-    if ((touch.gap - h * closes) * touch.per_width < kNearly) most = std::max(most, closes * touch.per_width);
+    if (closes > 0 && (touch.gap - h * closes) * touch.per_width < kNearly)
+      rates_.push_back(closes * touch.per_width);
   }
-  return most;
+  return ruling_rate(rates_, touches_.size());
 }
 
 // impulses of a substep that is not the last

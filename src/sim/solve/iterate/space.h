@@ -185,7 +185,8 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<double> farther_;
   std::vector<double> width_;  // of bodies, m
   std::vector<char> round_;
-  std::vector<Contact<D>> impulses_;  // of the substeps before
+  std::vector<Contact<D>> impulses_;   // of the substeps before
+  mutable std::vector<double> rates_;  // 1/s, of the touches that close
 
   std::vector<BodyMotion<D>> stances_;
   std::vector<double> margin_,

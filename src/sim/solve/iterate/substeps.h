@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
+#include <span>
 
 #include "sim/model/model.h"
 #include "sim/shape/shape.h"
@@ -42,7 +45,7 @@ AllowedOverlap allowed_overlap(const Model<D>& model) {
   return {kMost * crowded * crowded * crowded};
 }
 
-/// The most that two bodies may approach in a substep, in widths of the narrower one.
+/// The most that two bodies may approach in a substep, in widths of the narrower one; see ruling_rate().
 inline constexpr double kCloser = 0.025;
 /// The fewest and the most substeps a second.
 inline constexpr double kFewestSubsteps = 240, kMostSubsteps = 4800;
@@ -74,7 +77,23 @@ inline constexpr double kInTime = 1e-9;
 /// Gaps up to this, of a bounding radius, take part in an impact of the same instant.
 inline constexpr double kTogether = 1e-6;
 
-/// The number of substeps of a step of h s, for a largest closing speed of `rate` widths a second.
+/// The closing rate that says how many substeps a step has, 1/s: of many contacts the largest but for a
+/// two-hundredth of them, which may close twice as fast. Impacts of these are resolved each at its time, and
+/// a heap of a thousand is not divided as finely as its fastest pair asks for. `rates`: of the contacts that
+/// close; they are sorted anew. `contacts`: how many there are.
+inline double ruling_rate(std::span<double> rates, std::size_t contacts) {
+  constexpr std::size_t kOneOf = 200;
+  constexpr double kFaster = 2;
+  const std::size_t fastest = contacts / kOneOf;
+  if (rates.empty()) return 0;
+  const double most = *std::max_element(rates.begin(), rates.end());
+  if (fastest == 0) return most;
+  if (fastest >= rates.size()) return most / kFaster;
+  std::nth_element(rates.begin(), rates.begin() + std::ptrdiff_t(fastest), rates.end(), std::greater<>());
+  return std::max(rates[fastest], most / kFaster);
+}
+
+/// The number of substeps of a step of h s, for a ruling closing rate of `rate` widths a second.
 inline int substeps_for(double rate, double h) {
   return std::max(1, int(std::ceil(h * std::clamp(rate / kCloser, kFewestSubsteps, kMostSubsteps) - 1e-9)));
 }
