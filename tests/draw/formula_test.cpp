@@ -354,12 +354,12 @@ TEST(Placing, WordsBesideAnArrowClearItsLineAtAnyAngle) {
     const Point u(std::cos(k * 0.0872665), std::sin(k * 0.0872665)), v(-u.y(), u.x());
     for (const Placing::Candidate& each : Placing::along(tail, 300 * u, 8, size, 3, k < 72)) {
       const double middle = each.center.dot(v), half = (size / 2).dot(v.cwiseAbs());
-      // beyond its tip it stands across the line, and off the arrow by the part of the gap along an axis
-      bool at_tip = each.center.dot(u) > 300 && std::abs(middle) <= half;
+      // beyond its ends it stands across the line, and off the arrow by the part of the gap along an axis
+      bool at_end = std::abs(each.center.dot(u) - 150) > 150 && std::abs(middle) <= half;
       for (double s = 0; s <= 300; s += 1)
-        at_tip = at_tip &&
+        at_end = at_end &&
                  ((s * u - each.center).cwiseAbs() - size / 2).cwiseMax(0).norm() > 8 / std::sqrt(2.0) - 1e-9;
-      EXPECT_TRUE(at_tip || std::abs(middle) - half > 8 - 1e-9) << k << " " << middle << " " << half;
+      EXPECT_TRUE(at_end || std::abs(middle) - half > 8 - 1e-9) << k << " " << middle << " " << half;
     }
   }
 }

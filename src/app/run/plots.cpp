@@ -9,6 +9,7 @@
 
 #include "app/console/exit.h"
 #include "app/console/interrupt.h"
+#include "app/console/say.h"
 #include "app/run/compared.h"
 #include "app/run/simulation.h"
 #include "app/run/variation.h"
@@ -356,11 +357,28 @@ void join_plots(const std::vector<Ahead::Run>& runs, std::vector<Watched>& watch
   }
 }
 
+// Words that come and go with an arrow are never read where that is never long enough.
+void tell_never_seen(const scene::Scene& scene, const draw::Annotations& annotations) {
+  for (const auto& [index, largest] : annotations.never_seen()) {
+    const draw::Marks::Vector& vector = scene.film.marks.vectors[std::size_t(index)];
+    if (vector.label.empty()) continue;
+    const std::string_view unit = draw::unit(vector.quantity);
+    const std::string_view longer = unit == "N"     ? "; a larger look.force_scale makes it longer"
+                                    : unit == "m/s" ? "; a larger look.velocity_scale makes it longer"
+                                                    : "";
+    say(stderr,
+        "{}: note: the arrow '{}' is never long enough to be seen, nor are its words (at most {:.3g} {}){}\n",
+        scene.file, vector.label, largest, unit, longer);
+  }
+}
+
 std::shared_ptr<const draw::Annotations> annotations(const scene::Scene& scene, const Ahead& page,
                                                      draw::RunAhead found, const draw::Scales& given) {
-  return std::make_shared<const draw::Annotations>(scene.film.marks, depictor(scene, page), std::move(found),
-                                                   given, sim::value(scene.film.fps),
-                                                   scene.film.rows ? scene.film.height : 0);
+  const auto all = std::make_shared<const draw::Annotations>(
+      scene.film.marks, depictor(scene, page), std::move(found), given, sim::value(scene.film.fps),
+      scene.film.rows ? scene.film.height : 0);
+  tell_never_seen(scene, *all);
+  return all;
 }
 
 // the marks of several runs, with one scale for each kind of arrow: that of the longest

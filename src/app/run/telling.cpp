@@ -118,10 +118,14 @@ std::string motion(const sim::Vec3& v, const sim::SceneInfo& cast) {
   const int dimension = cast.dimension;
   const double speed = v.norm();
   std::vector<std::string> way;
-  if (dimension == 2 && std::abs(v.x()) > 0.3 * speed)
-    way.emplace_back(v.x() > 0 ? "to the right" : "to the left");
-  if (std::abs(v.y()) > 0.3 * speed) way.emplace_back(v.y() > 0 ? "up" : "down");
-  return fmt::format("at {} m/s{}{}", numeral(speed), way.empty() ? "" : " ", fmt::join(way, " and "));
+  // what is to the right in space is the camera's business
+  const auto along = [&](double component, const char* there, const char* back) {
+    if (std::abs(component) > 0.3 * speed) way.emplace_back(component > 0 ? there : back);
+  };
+  dimension == 2 ? along(v.x(), "to the right", "to the left") : along(v.x(), "along x", "along −x");
+  along(v.y(), "up", "down");
+  if (dimension == 3) along(v.z(), "along z", "along −z");
+  return fmt::format("at {} m/s{}{}", numeral(speed), way.empty() ? "" : " ", together(way));
 }
 
 bool stands(const sim::Vec3& v, const sim::SceneInfo& cast) { return !(v.norm() > kNoMotion * cast.scale); }

@@ -88,7 +88,7 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   if (!film()) draw_arrows(arrows, arrow_, colours_.room, ink, list_);
   arrows_.push_back(arrows[0]), inks_.push_back(ink);
   const Point end = film() ? arrows[0].tip : tip;
-  placing_.avoid(tail, end, 4);
+  placing_.avoid(tail, end, 4, true);
   // in print its halo, too: words that touch it look cut
   if (const Point way = end - tail; !film() && way.norm() > 0)
     for (const double side : {1.0, -1.0}) {
@@ -399,6 +399,12 @@ void Notes::length(int index, const Marks::Length& length) {
       places.push_back({from + part * (to - from) +
                             s * (gap_ * v + Point(v.x() * f.width / 2, v.y() * (f.ascent + f.descent) / 2)),
                         (part == 0.5 ? 0 : 3) * point_ + (s > 0 ? 0 : point_), false});
+  // farther off where there is no room beside it
+  for (const double far : {12.0, 26.0, 42.0})
+    for (const double s : {1.0, -1.0})
+      places.push_back({middle + s * ((gap_ + far * point_) * v +
+                                      Point(v.x() * f.width / 2, v.y() * (f.ascent + f.descent) / 2)),
+                        (8 + far) * point_, true});
   word(key, f, places, middle);
 }
 

@@ -548,6 +548,20 @@ std::vector<std::pair<const sim::Snapshot*, const Marks::Ghost*>> Annotations::g
   return all;
 }
 
+std::vector<std::pair<int, double>> Annotations::never_seen() const {
+  std::map<int, double> largest;
+  std::set<int> seen;
+  for (const LabelPlan& plan : plans_) {
+    for (const auto& [key, range] : plan.ranges)
+      if (key.kind == WordKey::vector)
+        largest[key.index] = std::max({largest[key.index], std::abs(range.low), std::abs(range.high)});
+    for (const auto& [key, course] : plan.courses)
+      if (key.kind == WordKey::vector) seen.insert(key.index);
+  }
+  std::erase_if(largest, [&](const auto& each) { return seen.contains(each.first) || !(each.second > 0); });
+  return {largest.begin(), largest.end()};
+}
+
 void Annotations::draw(int panel, const Projection& projection, const sim::Snapshot& now, double film,
                        List& list) const {
   annotate(marks_, scales_, cast_, colours_, projection, now, list,

@@ -46,6 +46,10 @@ class Annotations {
   /// Arrows and words over a panel's picture.
   void draw(int panel, const Projection& projection, const sim::Snapshot& now, double film, List& list) const;
 
+  /// The arrows with words that are too short to be seen at every instant of the run though they are not
+  /// zero: numbers of the marks' vectors, and the largest value of each, of its quantity's unit.
+  std::vector<std::pair<int, double>> never_seen() const;
+
   const Scales& scales() const { return scales_; }
   const LabelPlan& plan(int panel) const { return plans_[std::size_t(panel)]; }
 

@@ -33,6 +33,7 @@ constexpr double kOnRail = 4;       // of each unit of a curve under words
 constexpr double kOnTrail = 0.8;    // of each unit of a trail or path under words
 constexpr double kFromEdge = 3;     // points: from words to the page's edge at least
 constexpr double kLeaves = 1.5;     // times as fast as what they name words leave the page with it
+constexpr double kLedAcross = 12;   // points: of a leader across an arrow or over another body
 constexpr double kNameCovered = 6;  // as against the cost of other words over something
 
 constexpr std::uint8_t kPlate = 150;  // how much of what lies under the words of a film is covered
@@ -323,10 +324,11 @@ void Notes::avoid_rails() {
 void Notes::avoid_own_arrows() {
   if (!how_.look) return;
   const Look& look = *how_.look;
-  const auto line = [&](const Vec3& tail, const Vec3& tip, double weight) {
-    if (view_.before(tail) && view_.before(tip)) placing_.avoid(view_.page(tail), view_.page(tip), weight);
+  const auto line = [&](const Vec3& tail, const Vec3& tip, double weight, bool of_arrow = false) {
+    if (view_.before(tail) && view_.before(tip))
+      placing_.avoid(view_.page(tail), view_.page(tip), weight, of_arrow);
   };
-  const auto arrow = [&](const Vec3& tail, const Vec3& tip) { line(tail, tip, 4); };
+  const auto arrow = [&](const Vec3& tail, const Vec3& tip) { line(tail, tip, 4, true); };
   for (std::size_t i = 0; i < look.bodies.size() && i < now_.bodies.size(); ++i) {
     const sim::Snapshot::Body& body = now_.bodies[i];
     if (look.bodies[i].velocity) arrow(body.position, body.position + look.velocity_scale * body.velocity);
@@ -457,8 +459,10 @@ void Notes::offer_places() {
           each.cost = 0, each.clear = true;
           continue;
         }
-        const double cost = placing_.cost(offered.size, each);
+        double cost = placing_.cost(offered.size, each);
         each.clear = cost <= each.cost;
+        if (each.leader)
+          cost += placing_.leading(word.anchor, offered.size, each.center, kLedAcross * point_);
         // a name has room all around its body: it goes out of the way sooner
         each.cost += (word.key.kind == WordKey::name ? kNameCovered : 1) * (cost - each.cost);
       }

@@ -12,6 +12,9 @@
 namespace obscura::draw {
 namespace {
 
+constexpr double kBehind = 6;      // units: the cost of words behind an arrow's tail
+constexpr double kBeginsOn = 0.5;  // page units: so near it begins on an arrow
+
 /// How much of a segment lies within a rectangle, by clipping it at each side.
 double within(const Point& a, const Point& b, const Rect& r) {
   if (std::max(a.x(), b.x()) < r.x || std::min(a.x(), b.x()) > r.x + r.width ||
@@ -72,7 +75,9 @@ Point clear_line(const Point& n, double gap, const Point& size) {
 
 }  // namespace
 
-void Placing::avoid(const Point& a, const Point& b, double weight) { lines_.push_back({a, b, weight}); }
+void Placing::avoid(const Point& a, const Point& b, double weight, bool arrow) {
+  lines_.push_back({a, b, weight, arrow});
+}
 
 void Placing::avoid(const std::vector<Point>& area, double cost) {
   if (area.size() < 3) return;
@@ -115,6 +120,33 @@ Rect Placing::rect_of(const Point& size, const Candidate& c) const {
 
 double Placing::cost(const Point& size, const Candidate& candidate) const {
   return candidate.cost + lines(rect_of(size, candidate));
+}
+
+double Placing::leading(const Point& anchor, const Point& size, const Point& center, double crossing) const {
+  const Point way = center - anchor;
+  const double across = std::min(size.x() / 2 / std::max(std::abs(way.x()), 1e-9),
+                                 size.y() / 2 / std::max(std::abs(way.y()), 1e-9));
+  if (!(across < 1)) return 0;
+  const Point end = anchor + (1 - across) * way;
+  double sum = 0;
+  for (const Line& line : lines_) {
+    if (!line.arrow) continue;
+    const Point d = line.b - line.a, from = anchor - line.a, to = end - line.a;
+    const double here = d.x() * from.y() - d.y() * from.x(), there = d.x() * to.y() - d.y() * to.x();
+    // what begins on it does not cross it
+    if (std::abs(here) < kBeginsOn * d.norm() || (here < 0) == (there < 0)) continue;
+    const Point at = from + here / (here - there) * (to - from);
+    if (const double part = at.dot(d); part > 0 && part < d.squaredNorm()) sum += crossing;
+  }
+  constexpr int kPieces = 8;
+  for (const Area& area : areas_) {
+    if (area.cost < crossing || inside(area.outline, anchor)) continue;
+    int covered = 0;
+    for (int i = 1; i <= kPieces; ++i)
+      covered += inside(area.outline, anchor + i * (1 - across) / kPieces * way);
+    if (covered > 0) sum += crossing + area.cost * covered / kPieces;
+  }
+  return sum;
 }
 
 Placing::Candidate Placing::place(const Point& size, const std::vector<Candidate>& candidates) {
@@ -164,6 +196,8 @@ std::vector<Placing::Candidate> Placing::along(const Point& tail, const Point& t
       }
     }
     all.push_back({tip + clear(u, gap, size), ring + 1.5 * unit, false});
+    if (fixed && off > 6)
+      all.push_back({tail + clear(-u, gap + off * unit, size), ring + kBehind * unit, true});
     ring += 8 * unit;
   }
   // where many arrows leave one body: beyond its outline
@@ -181,6 +215,11 @@ std::vector<Placing::Candidate> Placing::along(const Point& tail, const Point& t
                      ring + 2 * unit, true});
     }
     all.push_back({tip + clear(u, gap + off * unit / 2, size), ring, true});
+    // and behind it
+    all.push_back({tail + clear(-u, gap + off * unit, size), ring + kBehind * unit, true});
+    for (const double side : {1.0, -1.0})
+      all.push_back({tail - (gap + off * unit / 2 + along) * u + clear_line(side * v, gap, size),
+                     ring + kBehind * unit, true});
     ring += 6 * unit;
   }
   return all;

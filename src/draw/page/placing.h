@@ -14,8 +14,9 @@ class Placing {
   /// `margin`: how much room words want around them, of their height.
   explicit Placing(const Rect& page, double margin = 0.12) : page_(page), margin_(margin) {}
 
-  /// Lines that labels should not cover; a heavier line is avoided more.
-  void avoid(const Point& a, const Point& b, double weight);
+  /// Lines that labels should not cover; a heavier line is avoided more. Of an arrow: leaders should not
+  /// cross it either.
+  void avoid(const Point& a, const Point& b, double weight, bool arrow = false);
   void avoid(const Rect& rect) { taken_.push_back(rect); }
   /// A convex area that labels should not cover, and what it costs to lie wholly in it.
   void avoid(const std::vector<Point>& area, double cost);
@@ -32,6 +33,10 @@ class Placing {
   /// The cost of a candidate by the lines and areas that are to be avoided, and its own; neither labels that
   /// have a place already nor the page's edge count.
   double cost(const Point& size, const Candidate& candidate) const;
+  /// The cost of a leader from words of `size` to what they name at `anchor`: `crossing` for each arrow
+  /// that it crosses and each area that it runs through, and of these their share of it too. Not for what it
+  /// begins in, nor for areas that cost less than a crossing.
+  double leading(const Point& anchor, const Point& size, const Point& center, double crossing) const;
 
   /// Places around a point, and farther off with a leader; beside an arrow.
   static std::vector<Candidate> around(const Point& at, double gap, const Point& size, double unit);
@@ -52,6 +57,7 @@ class Placing {
   struct Line {
     Point a, b;
     double weight;
+    bool arrow;
   };
   Rect page_;
   double margin_;

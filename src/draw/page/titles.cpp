@@ -1,5 +1,5 @@
 // Cards cover the page; captions stand in a strip at its foot that is left free for them, the first line
-// always at one height; the badge is a small frame before the clock.
+// at its top; the badge is a small frame before the clock.
 
 #include "draw/page/titles.h"
 
@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kCardTitle = 62, kText = 32, kCaption = 32;  // em, page units at the weight 1
 constexpr double kLead = 1.35;                                // of a line
+constexpr double kAbove = 0.98;                               // of it, above its baseline
 constexpr double kFoot = 26;                                  // from the page's edge to the captions
 constexpr double kCaptionFade = 0.2;                          // s: captions come and go
 constexpr double kCaptionWidth = 0.86;                        // of the page
@@ -87,12 +88,16 @@ double opacity(const Caption& caption, double film) {
 void draw_captions(const Titles& titles, const Rect& page, double weight, double time, double film, Color ink,
                    List& list) {
   const double size = kCaption * weight;
-  double baseline = page.height - titles.foot + 0.98 * size;
+  double top = page.height - titles.foot;
   for (const Caption& caption : titles.captions) {
     if (!caption.shown.has(time, film)) continue;
     Color color = ink;
     if (!titles.still) color.a = std::uint8_t(std::lround(color.a * opacity(caption, film)));
-    centered(caption.lines, Face::medium, size, page.width / 2, baseline, color, list);
+    for (std::size_t k = 0; k < caption.lines.size(); ++k) {
+      add_prose(caption.lines[k], Face::medium, size, color, {page.width / 2, top + caption.room[k].x()},
+                Align::center, list);
+      top += caption.room[k].sum();
+    }
   }
 }
 
@@ -144,14 +149,22 @@ Titles laid_out(const Titles& titles, double aspect, double type_scale) {
   all.type_scale = type_scale;
   all.foot = 0;
   const double size = kCaption * page_weight(aspect) * type_scale;
-  for (Caption& caption : all.captions)
+  for (Caption& caption : all.captions) {
     caption.lines = balanced(caption.text, Face::medium, size, kCaptionWidth * 1080 * aspect);
-  // the most lines at one instant: one at which a caption begins
+    caption.room.clear();
+    for (const std::string& line : caption.lines) {
+      const Formula set = prose(line, Face::medium, size, {});
+      caption.room.emplace_back(std::max(kAbove * size, set.ascent),
+                                std::max((kLead - kAbove) * size, set.descent));
+    }
+  }
+  // the highest at one instant: one at which a caption begins
   for (const Caption& at : all.captions) {
-    std::size_t lines = 0;
+    double high = 0;
     for (const Caption& each : all.captions)
-      if (each.begin <= at.begin && at.begin < each.end) lines += each.lines.size();
-    all.foot = std::max(all.foot, kLead * size * double(lines) + kFoot * page_weight(aspect));
+      if (each.begin <= at.begin && at.begin < each.end)
+        for (const Point& room : each.room) high += room.sum();
+    all.foot = std::max(all.foot, high + kFoot * page_weight(aspect));
   }
   return all;
 }

@@ -24,6 +24,7 @@ struct Caption {
   Interval shown{};
   double begin = 0, end = 1e300;     // s of the film: when it is shown
   std::vector<std::string> lines{};  // of a page: as long as they may be
+  std::vector<Point> room{};         // of each: what it takes above its baseline and below, page units
 };
 
 /// What a film says beside its marks.

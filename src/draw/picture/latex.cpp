@@ -16,12 +16,15 @@ namespace obscura::draw {
 namespace {
 
 /// A character that TeX does not know by itself, in mathematics.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 21> kSigns{
-    {{"−", "-"},           {"–", "\\mbox{--}"}, {"°", "^{\\circ}"}, {"′", "^{\\prime}"}, {"²", "^{2}"},
-     {"³", "^{3}"},        {"¹", "^{1}"},       {"⁻", "^{-}"},      {"⁺", "^{+}"},       {"∑", "\\sum "},
-     {"∏", "\\prod "},     {"∫", "\\int "},     {"∮", "\\oint "},   {"√", "\\surd "},    {"ϵ", "\\epsilon "},
-     {"ϕ", "\\phi "},      {"µ", "\\mu "},      {"Ω", "\\Omega "},  {"∠", "\\angle "},   {"⟂", "\\perp "},
-     {"½", "\\frac{1}{2}"}}};
+constexpr std::array<std::pair<std::string_view, std::string_view>, 23> kSigns{
+    {{"−", "-"},          {"–", "\\mbox{--}"},   {"°", "^{\\circ}"},
+     {"′", "^{\\prime}"}, {"²", "^{2}"},         {"³", "^{3}"},
+     {"¹", "^{1}"},       {"⁻", "^{-}"},         {"⁺", "^{+}"},
+     {"∑", "\\sum "},     {"∏", "\\prod "},      {"∫", "\\int "},
+     {"∮", "\\oint "},    {"√", "\\surd "},      {"ϵ", "\\epsilon "},
+     {"ϕ", "\\phi "},     {"µ", "\\mu "},        {"Ω", "\\Omega "},
+     {"∠", "\\angle "},   {"⟂", "\\perp "},      {"½", "\\frac{1}{2}"},
+     {"φ", "\\varphi "},  {"ε", "\\varepsilon "}}};
 /// TeX's own characters.
 constexpr std::array<std::pair<char, std::string_view>, 10> kOwn{{{'\\', "\\textbackslash{}"},
                                                                   {'{', "\\{"},
