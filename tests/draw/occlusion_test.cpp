@@ -287,6 +287,15 @@ TEST(OutmostPlaces, AreOfTheBodiesOwnForms) {
   EXPECT_NEAR(low_high(both).first.x(), -3.5, 1e-12);
   EXPECT_NEAR(low_high(both).second.x(), 1 + x, 1e-12);
   EXPECT_TRUE(OutmostPlaces().places().empty());
+
+  // with their drop-lines they reach down to the floor, not to what leans
+  sim::SceneInfo::Wall floor, slope;
+  floor.point = {5, -2, 0}, floor.normal = {0, 1, 0};
+  slope.point = {0, -9, 0}, slope.normal = {0.6, 0.8, 0};
+  made.cast.walls = {floor, slope};
+  both.add_feet(made.cast, made.now);
+  EXPECT_NEAR(low_high(both).first.y(), -2, 1e-12);
+  EXPECT_NEAR(low_high(both).second.y(), 2 + y, 1e-12);
 }
 
 /// A joint lies within the limbs that it holds together: it does not stick out of them.

@@ -304,7 +304,10 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
       continue;
     }
     watched.any = true;
-    if (fits_run(scene)) watched.reach.add(watched.cast, now);
+    if (fits_run(scene)) {
+      watched.reach.add(watched.cast, now);
+      if (scene.look.drop_lines) watched.reach.add_feet(watched.cast, now);
+    }
     for (std::size_t i = 0; i < wanted.size(); ++i)
       add(watched.cast, now, wanted[i], lines[i], watched.plots[i]);
     if (marks.empty()) continue;

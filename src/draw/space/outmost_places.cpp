@@ -11,6 +11,8 @@ namespace {
 
 using sim::Vec3;
 
+constexpr double kUpright = 0.999;  // of a normal upwards: a floor's
+
 /// Directions to the points of a small cubic lattice, one each: 98, at most 19 degrees apart, and the same
 /// numbers everywhere.
 const std::vector<Vec3>& directions() {
@@ -47,17 +49,31 @@ void OutmostPlaces::add(const sim::SceneInfo& cast, const sim::Snapshot& now) {
     if (body.bare) continue;
     const Eigen::Matrix3d turn = now.bodies[i].orientation.toRotationMatrix();
     for (std::size_t k = 0; k < towards.size(); ++k) {
-      const auto offer = [&](const Vec3& own) {
-        const Vec3 at = now.bodies[i].position + turn * own;
-        const double far = at.dot(towards[k]);
-        if (far > all_[k].far) all_[k] = {far, at};
-      };
+      const auto own = [&](const Vec3& at) { offer(k, now.bodies[i].position + turn * at); };
       const Vec3 d = turn.transpose() * towards[k];
-      if (body.parts.empty()) offer(outmost(body, d));
+      if (body.parts.empty()) own(outmost(body, d));
       for (const sim::SceneInfo::Part& part : body.parts)
-        offer(part.center + part.turn * outmost(part, part.turn.conjugate() * d));
+        own(part.center + part.turn * outmost(part, part.turn.conjugate() * d));
     }
   }
+}
+
+void OutmostPlaces::add_feet(const sim::SceneInfo& cast, const sim::Snapshot& now) {
+  all_.resize(directions().size());
+  for (const auto& wall : cast.walls) {
+    const Vec3 up = wall.normal.normalized();
+    if (!(up.y() > kUpright)) continue;
+    for (std::size_t i = 0; i < cast.bodies.size() && i < now.bodies.size(); ++i) {
+      if (cast.bodies[i].fixed || cast.bodies[i].bare) continue;
+      const Vec3& at = now.bodies[i].position;
+      for (std::size_t k = 0; k < all_.size(); ++k) offer(k, at - (at - wall.point).dot(up) * up);
+    }
+  }
+}
+
+void OutmostPlaces::offer(std::size_t k, const Vec3& at) {
+  const double far = at.dot(directions()[k]);
+  if (far > all_[k].far) all_[k] = {far, at};
 }
 
 void OutmostPlaces::add(const OutmostPlaces& other) {

@@ -12,6 +12,8 @@ class OutmostPlaces {
  public:
   /// Adds the forms of all bodies that are drawn, as they lie at an instant.
   void add(const sim::SceneInfo& cast, const sim::Snapshot& now);
+  /// Adds the places on the floor under them, where their drop-lines end.
+  void add_feet(const sim::SceneInfo& cast, const sim::Snapshot& now);
   void add(const OutmostPlaces& other);
 
   /// The outmost places, m, world frame; none before an instant is added. A direction between two of them
@@ -23,6 +25,8 @@ class OutmostPlaces {
     double far = -1e300;  // along its direction, m
     sim::Vec3 at = sim::Vec3::Zero();
   };
+  void offer(std::size_t k, const sim::Vec3& at);
+
   std::vector<Outmost> all_;  // one a direction
 };
 
