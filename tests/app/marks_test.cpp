@@ -671,6 +671,37 @@ a &lt; b &amp; c
   EXPECT_FALSE(std::filesystem::exists(path("mute.vtt")));
 }
 
+/// Words that come and go with an arrow that is never long enough are never read: that is told; nor is it of
+/// what is not there at all.
+TEST_F(MarkedFilm, TellsWhichArrowIsNeverSeen) {
+  const std::string vectors =
+      "[[film.vector]]\nquantity = \"drag\"\nof = \"ball\"\nlabel = \"D\"\n"
+      "[[film.vector]]\nquantity = \"friction\"\nof = \"ball\"\nlabel = \"f\"\n"
+      "[[film.vector]]\nquantity = \"weight\"\nof = \"ball\"\nlabel = \"G\"\n";
+  const std::string ball =
+      "duration = 0.2\n[room]\nsize = [4, 3]\n[[ball]]\nname = \"ball\"\nradius = 0.1\nposition = [2, 2]\n"
+      "velocity = [0.1, 0]\ndrag = 0.0003\n";
+  scene(ball + vectors);
+  const Outcome run = obscura("render scene.toml --at 0.1 --size 320x180 -o a.png");
+  EXPECT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("scene.toml: note: the arrow 'D' is never long enough to be seen"));
+  EXPECT_THAT(run.err, HasSubstr("a larger look.force_scale makes it longer"));
+  EXPECT_THAT(run.err, Not(HasSubstr("'f'")));
+  EXPECT_THAT(run.err, Not(HasSubstr("'G'")));
+  EXPECT_THAT(run.err, Not(HasSubstr("of the picture's height")));
+}
+
+/// Large words and plots may leave hardly any of the picture to the room.
+TEST_F(MarkedFilm, TellsWhereItsRoomIsCrowdedOut) {
+  const std::string plot = "[[film.plot]]\nquantity = [\"height\"]\nof = \"ball\"\n";
+  scene(std::string(kMarkedFilm) + plot + plot);
+  const std::string still = "render scene.toml --at 0.1 --size 320x180 -o a.png";
+  EXPECT_THAT(obscura(still).err, Not(HasSubstr("of the picture's height")));
+  const Outcome large = obscura(still + " --set look.type_scale=2");
+  EXPECT_EQ(large.exit, 0) << large.err;
+  EXPECT_THAT(large.err, HasSubstr("of the picture's height to the room"));
+}
+
 /// Marks of the run begin chapters, also where the film names none of them.
 TEST_F(MarkedFilm, HasChaptersOfItsMarks) {
   if (!installed("ffprobe")) GTEST_SKIP() << "needs ffprobe";
@@ -717,6 +748,20 @@ TEST(Captions, StandBelowThePicture) {
                            late = film.artist.projection(0, film.now(30));
     EXPECT_EQ(early.page({0, 0, 0}), late.page({0, 0, 0}));
   }
+}
+
+/// The limits of a sum are within the strip, too: it is higher by what they reach below the line.
+TEST(Captions, HaveRoomForTheirMathematics) {
+  const auto strip = [](const std::string& words) {
+    draw::Titles titles;
+    titles.captions.push_back({.text = words});
+    return draw::laid_out(titles, 16.0 / 9, 1);
+  };
+  const draw::Titles plain = strip("The momentum stays."),
+                     sum = strip("The momentum $\\sum_i m_i v_i$ stays.");
+  ASSERT_EQ(sum.captions[0].room.size(), 1u);
+  EXPECT_GT(sum.captions[0].room[0].y(), plain.captions[0].room[0].y() + 5);
+  EXPECT_NEAR(sum.foot - plain.foot, (sum.captions[0].room[0] - plain.captions[0].room[0]).sum(), 1e-9);
 }
 
 TEST(Fade, ComesFromThePageAndGoesToIt) {

@@ -384,6 +384,31 @@ TEST(Placing, WordsStayOnThePage) {
   EXPECT_GE(place.center.y() - size.y() / 2, 0);
 }
 
+// A leader may leave the arrow and the body that it begins in, and cross what is no arrow, at no cost.
+TEST(Placing, LeadersKeepOffOtherArrowsAndBodies) {
+  const auto square = [](double x, double y) {
+    return std::vector<Point>{{x - 10, y - 10}, {x + 10, y - 10}, {x + 10, y + 10}, {x - 10, y + 10}};
+  };
+  Placing placing({0, 0, 400, 400});
+  const Point at(100, 100), size(40, 20);
+  const auto cost = [&](const Point& center) { return placing.leading(at, size, center, 30); };
+  placing.avoid({80, 100}, {120, 100}, 4, true), placing.avoid(square(100, 100), 200);
+  placing.avoid({150, 0}, {150, 400}, 4);
+  EXPECT_EQ(cost({300, 200}), 0);
+  placing.avoid({200, 0}, {200, 400}, 4, true);
+  EXPECT_EQ(cost({300, 200}), 30);
+  EXPECT_EQ(cost({100, 300}), 0);
+  // words that reach to the arrow are not led across it
+  EXPECT_EQ(cost({215, 100}), 0);
+  // half of the way, or so, over a body
+  placing.avoid(square(100, 150), 400);
+  EXPECT_GT(cost({100, 200}), 30 + 50);
+  EXPECT_LT(cost({100, 200}), 30 + 200);
+  // one that costs hardly anything is crossed
+  placing.avoid(square(50, 100), 20);
+  EXPECT_EQ(cost({20, 100}), 0);
+}
+
 TEST(Plot, TicksAreRoundNumbersWithinTheirRange) {
   EXPECT_THAT(ticks(0, 1, 5), testing::Pointwise(testing::DoubleEq(), {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}));
   EXPECT_THAT(ticks(-3, 12, 4), testing::Pointwise(testing::DoubleEq(), {0.0, 5.0, 10.0}));

@@ -360,6 +360,18 @@ void join_plots(const std::vector<Ahead::Run>& runs, std::vector<Watched>& watch
   }
 }
 
+// Large words and several plots may leave a film's room hardly any height.
+void tell_crowded(const scene::Scene& scene, const draw::Layout& layout) {
+  constexpr double kLeast = 0.15;
+  const double part = std::max(0.0, layout.left_high / 1080);
+  if (scene.dimension() == 3 || part >= kLeast) return;
+  say(stderr,
+      "{}: note: title, captions and plots leave {:.0f} % of the picture's height to the room; fewer plots, "
+      "shorter "
+      "words or a smaller look.type_scale leave more\n",
+      scene.file, 100 * part);
+}
+
 // Words that come and go with an arrow are never read where that is never long enough.
 void tell_never_seen(const scene::Scene& scene, const draw::Annotations& annotations) {
   for (const auto& [index, largest] : annotations.never_seen()) {
@@ -450,6 +462,7 @@ Ahead ahead(const scene::Scene& scene) {
     const draw::Scales given = given_scales(scene, watched.front().cast);
     all.annotations = annotations(scene, all, std::move(watched.front().marks), given);
   }
+  if (!all.runs) tell_crowded(scene, depictor(scene, all).layout());
   return all;
 }
 

@@ -85,6 +85,7 @@ struct Offered {
   Point anchor;
   std::vector<Placing::Candidate> places;
   std::optional<std::pair<Point, Point>> arrow{};  // from tail to tip: that it names, and does not pass over
+  bool read = true;                                // as strong as words need to be
 };
 
 /// Of the sizes of two labels together: nearer than that they lie on each other.

@@ -499,6 +499,8 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
   }
   paths_.resize(marks_.paths.size());
 
+  std::map<int, double> never;  // vectors and the largest value of each
+  std::set<int> read;
   // first what values there are, then where their labels may stand
   for (int panel = 0; panel < artist.panels(); ++panel) {
     LabelPlan plan;
@@ -527,6 +529,12 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
       annotate(marks_, scales_, cast_, colours_, artist.projection(panel, moments[k]), moments[k], unused,
                how);
     }
+    for (const auto& [key, range] : plan.ranges)
+      if (key.kind == WordKey::vector)
+        never[key.index] = std::max({never[key.index], std::abs(range.low), std::abs(range.high)});
+    for (const std::vector<Offered>& sample : offered)
+      for (const Offered& each : sample)
+        if (each.key.kind == WordKey::vector && each.read) read.insert(each.key.index);
     plan.courses = courses(offered, films, lettering_.point,
                            kSpeed * fps * lettering_.point / film_lettering(1, 1).point);
     // lines behind bodies are not among what is avoided
@@ -534,6 +542,8 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
       for (auto& [key, course] : plan.courses) course.covers = true;
     plans_.push_back(std::move(plan));
   }
+  std::erase_if(never, [&](const auto& each) { return read.contains(each.first) || !(each.second > 0); });
+  never_seen_.assign(never.begin(), never.end());
 }
 
 std::vector<WorldLine> Annotations::lines(const sim::Snapshot& now, double film) const {
@@ -546,20 +556,6 @@ std::vector<std::pair<const sim::Snapshot*, const Marks::Ghost*>> Annotations::g
   for (std::size_t i = 0; i < ghosts_.size() && i < marks_.ghosts.size(); ++i)
     if (marks_.ghosts[i].shown.has(now.time, film)) all.emplace_back(&ghosts_[i], &marks_.ghosts[i]);
   return all;
-}
-
-std::vector<std::pair<int, double>> Annotations::never_seen() const {
-  std::map<int, double> largest;
-  std::set<int> seen;
-  for (const LabelPlan& plan : plans_) {
-    for (const auto& [key, range] : plan.ranges)
-      if (key.kind == WordKey::vector)
-        largest[key.index] = std::max({largest[key.index], std::abs(range.low), std::abs(range.high)});
-    for (const auto& [key, course] : plan.courses)
-      if (key.kind == WordKey::vector) seen.insert(key.index);
-  }
-  std::erase_if(largest, [&](const auto& each) { return seen.contains(each.first) || !(each.second > 0); });
-  return {largest.begin(), largest.end()};
 }
 
 void Annotations::draw(int panel, const Projection& projection, const sim::Snapshot& now, double film,

@@ -48,7 +48,7 @@ class Annotations {
 
   /// The arrows with words that are too short to be seen at every instant of the run though they are not
   /// zero: numbers of the marks' vectors, and the largest value of each, of its quantity's unit.
-  std::vector<std::pair<int, double>> never_seen() const;
+  const std::vector<std::pair<int, double>>& never_seen() const { return never_seen_; }
 
   const Scales& scales() const { return scales_; }
   const LabelPlan& plan(int panel) const { return plans_[std::size_t(panel)]; }
@@ -61,6 +61,7 @@ class Annotations {
   Lettering lettering_;
   Scales scales_;
   std::vector<LabelPlan> plans_;  // one a panel
+  std::vector<std::pair<int, double>> never_seen_;
   std::vector<sim::Snapshot> ghosts_;
   std::vector<std::vector<sim::Track::Point>> paths_;  // one a path of the marks, of its point
 };

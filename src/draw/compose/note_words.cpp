@@ -36,6 +36,7 @@ constexpr double kLeaves = 1.5;     // times as fast as what they name words lea
 constexpr double kLedAcross = 12;   // points: of a leader across an arrow or over another body
 constexpr double kNameCovered = 6;  // as against the cost of other words over something
 
+constexpr std::uint8_t kRead = 128;   // opacity from which on words are read
 constexpr std::uint8_t kPlate = 150;  // how much of what lies under the words of a film is covered
 
 using sim::Vec3;
@@ -450,7 +451,8 @@ void Notes::offer_places() {
            low.y() < page.y + page.height;
   };
   for (Word& word : words_) {
-    Offered offered{word.key, size(word.set), word.anchor, std::move(word.places), word.arrow};
+    Offered offered{word.key,   size(word.set),           word.anchor, std::move(word.places),
+                    word.arrow, word.set.color.a >= kRead};
     if (!how_.ranges)
       for (Placing::Candidate& each : offered.places) {
         each.center = on_page(word, each.center);
