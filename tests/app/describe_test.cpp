@@ -111,6 +111,18 @@ start = "cut"
   EXPECT_THAT(run.out, Not(HasSubstr("breaks")));
 }
 
+// In space, along which axes: what is to the right is the camera's business.
+TEST_F(Describe, TellsAlongWhichAxesItFliesInSpace) {
+  scene(
+      "duration = 0.1\n[room]\nsize = [9, 3, 9]\n[[ball]]\nname = \"a\"\nradius = 0.1\nposition = [0, 1, 0]\n"
+      "velocity = [3, 2.5, -0.6]\n[[ball]]\nname = \"c\"\nradius = 0.1\nposition = [0, 1, 2]\n"
+      "velocity = [-2, 0.2, -2]\n");
+  const Outcome run = obscura("describe scene.toml");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("The a starts at (0, 1, 0) m, at 3.95 m/s along x and up.\n"));
+  EXPECT_THAT(run.out, HasSubstr("The c starts at (0, 1, 2) m, at 2.84 m/s along −x and along −z.\n"));
+}
+
 // A body that turns on the spot is not said to stand still; about its middle axis it turns over.
 TEST_F(Describe, TellsOfWhatTurns) {
   scene(

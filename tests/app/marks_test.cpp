@@ -684,11 +684,34 @@ TEST_F(MarkedFilm, TellsWhichArrowIsNeverSeen) {
   scene(ball + vectors);
   const Outcome run = obscura("render scene.toml --at 0.1 --size 320x180 -o a.png");
   EXPECT_EQ(run.exit, 0) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("scene.toml: note: the arrow 'D' is never long enough to be seen"));
+  EXPECT_THAT(run.err,
+              HasSubstr("scene.toml: note: the arrow 'D' is never long enough for its words to be read"));
   EXPECT_THAT(run.err, HasSubstr("a larger look.force_scale makes it longer"));
   EXPECT_THAT(run.err, Not(HasSubstr("'f'")));
   EXPECT_THAT(run.err, Not(HasSubstr("'G'")));
   EXPECT_THAT(run.err, Not(HasSubstr("of the picture's height")));
+}
+
+/// What only rounds to something is not there: nothing is said of a box that rests, nor of a run in space.
+TEST_F(MarkedFilm, SaysNothingOfArrowsThatAreNone) {
+  std::string vectors;
+  for (const char* quantity : {"friction", "net_force", "velocity", "acceleration", "torque"})
+    vectors +=
+        "[[film.vector]]\nquantity = \"" + std::string(quantity) + "\"\nof = \"box\"\nlabel = \"{:.2}\"\n";
+  scene(
+      "duration = 0.2\n[room]\nsize = [4, 3]\n[[box]]\nname = \"box\"\nsize = [0.4, 0.3]\n"
+      "position = [2, 0.15]\n" +
+      vectors);
+  const Outcome rests = obscura("render scene.toml --at 0.1 --size 320x180 -o a.png");
+  EXPECT_EQ(rests.exit, 0) << rests.err;
+  EXPECT_EQ(rests.err, "");
+  scene(
+      "duration = 0.2\n[room]\nsize = [4, 3, 4]\n[[ball]]\nname = \"box\"\nradius = 0.2\n"
+      "position = [0, 1, 0]\n[[film.plot]]\nquantity = [\"height\"]\nof = \"box\"\n" +
+      vectors);
+  const Outcome space = obscura("render scene.toml --at 0.1 --size 320x180 -o a.png");
+  EXPECT_EQ(space.exit, 0) << space.err;
+  EXPECT_EQ(space.err, "");
 }
 
 /// Large words and plots may leave hardly any of the picture to the room.

@@ -345,6 +345,9 @@ TEST(Formula, UnitsAfterANumberAreUpright) {
                                         std::pair(" ", math), std::pair("v", math_italic)));
   EXPECT_THAT(set("2 g"), ElementsAre(std::pair("2 ", math), std::pair("g", math_italic)));
   EXPECT_EQ(latex("m = 2 kg"), "$m=2\\ \\mathrm{kg}$");
+  // the letter as it looks here; LaTeX's own word as it looks there
+  EXPECT_EQ(latex("φ + ε"), "$\\varphi +\\varepsilon$");
+  EXPECT_EQ(latex("\\phi"), "$\\phi$");
 }
 
 // Beside an arrow, of a film or in print, however it turns: no corner of the words lies over its line.

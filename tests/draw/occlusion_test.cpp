@@ -288,11 +288,12 @@ TEST(OutmostPlaces, AreOfTheBodiesOwnForms) {
   EXPECT_NEAR(low_high(both).second.x(), 1 + x, 1e-12);
   EXPECT_TRUE(OutmostPlaces().places().empty());
 
-  // with their drop-lines they reach down to the floor, not to what leans
-  sim::SceneInfo::Wall floor, slope;
+  // with their drop-lines they reach down to the ground: not to what leans more, nor to what lies under it
+  sim::SceneInfo::Wall floor, slope, deeper;
   floor.point = {5, -2, 0}, floor.normal = {0, 1, 0};
   slope.point = {0, -9, 0}, slope.normal = {0.6, 0.8, 0};
-  made.cast.walls = {floor, slope};
+  deeper.point = {0, -5, 0}, deeper.normal = {0, 2, 0};
+  made.cast.walls = {slope, deeper, floor};
   both.add_feet(made.cast, made.now);
   EXPECT_NEAR(low_high(both).first.y(), -2, 1e-12);
   EXPECT_NEAR(low_high(both).second.y(), 2 + y, 1e-12);

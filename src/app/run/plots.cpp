@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -361,39 +362,44 @@ void join_plots(const std::vector<Ahead::Run>& runs, std::vector<Watched>& watch
 }
 
 // Large words and several plots may leave a film's room hardly any height.
-void tell_crowded(const scene::Scene& scene, const draw::Layout& layout) {
+void tell_crowded(const scene::Scene& scene, const Ahead& page) {
   constexpr double kLeast = 0.15;
-  const double part = std::max(0.0, layout.left_high / 1080);
-  if (scene.dimension() == 3 || part >= kLeast) return;
+  if (scene.dimension() == 3 || page.runs) return;
+  const double part = std::max(0.0, depictor(scene, page).layout().room_height / 1080);
+  if (part >= kLeast) return;
   say(stderr,
       "{}: note: title, captions and plots leave {:.0f} % of the picture's height to the room; fewer plots, "
-      "shorter "
-      "words or a smaller look.type_scale leave more\n",
+      "shorter words or a smaller look.type_scale leave more\n",
       scene.file, 100 * part);
 }
 
-// Words that come and go with an arrow are never read where that is never long enough.
-void tell_never_seen(const scene::Scene& scene, const draw::Annotations& annotations) {
-  for (const auto& [index, largest] : annotations.never_seen()) {
+// Words that come and go with an arrow are never read where that is never long enough, in all of these runs.
+void tell_never_seen(const scene::Scene& scene,
+                     const std::vector<std::shared_ptr<const draw::Annotations>>& runs) {
+  std::map<int, std::pair<std::size_t, double>> never;  // in how many, and the largest value
+  for (const auto& run : runs)
+    for (const auto& [index, largest] : run->never_seen()) {
+      auto& [count, most] = never[index];
+      ++count, most = std::max(most, largest);
+    }
+  for (const auto& [index, known] : never) {
     const draw::Marks::Vector& vector = scene.film.marks.vectors[std::size_t(index)];
-    if (vector.label.empty()) continue;
+    if (vector.label.empty() || known.first < runs.size()) continue;
     const std::string_view unit = draw::unit(vector.quantity);
     const std::string_view longer = unit == "N"     ? "; a larger look.force_scale makes it longer"
                                     : unit == "m/s" ? "; a larger look.velocity_scale makes it longer"
                                                     : "";
     say(stderr,
-        "{}: note: the arrow '{}' is never long enough to be seen, nor are its words (at most {:.3g} {}){}\n",
-        scene.file, vector.label, largest, unit, longer);
+        "{}: note: the arrow '{}' is never long enough for its words to be read (at most {:.3g} {}){}\n",
+        scene.file, vector.label, known.second, unit, longer);
   }
 }
 
 std::shared_ptr<const draw::Annotations> annotations(const scene::Scene& scene, const Ahead& page,
                                                      draw::RunAhead found, const draw::Scales& given) {
-  const auto all = std::make_shared<const draw::Annotations>(
-      scene.film.marks, depictor(scene, page), std::move(found), given, sim::value(scene.film.fps),
-      scene.film.rows ? scene.film.height : 0);
-  tell_never_seen(scene, *all);
-  return all;
+  return std::make_shared<const draw::Annotations>(scene.film.marks, depictor(scene, page), std::move(found),
+                                                   given, sim::value(scene.film.fps),
+                                                   scene.film.rows ? scene.film.height : 0);
 }
 
 // the marks of several runs, with one scale for each kind of arrow: that of the longest
@@ -411,9 +417,14 @@ void annotate(const Ahead& page, std::vector<Watched>& watched, std::vector<Ahea
       if (own.*member > 0 && (common.*member == 0 || own.*member < common.*member))
         common.*member = own.*member;
   }
-  for (std::size_t i = 0; i < runs.size(); ++i)
-    if (!runs[i].scene.film.marks.empty())
-      runs[i].annotations = annotations(runs[i].scene, page, std::move(watched[i].marks), common);
+  std::vector<std::shared_ptr<const draw::Annotations>> made;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].scene.film.marks.empty()) continue;
+    runs[i].annotations = annotations(runs[i].scene, page, std::move(watched[i].marks), common);
+    made.push_back(runs[i].annotations);
+  }
+  // a run with other marks says nothing of these
+  if (made.size() == runs.size()) tell_never_seen(runs.front().scene, made);
 }
 
 }  // namespace
@@ -422,7 +433,10 @@ Ahead ahead(const scene::Scene& scene) {
   const std::vector<draw::Chart>& wanted = scene.film.charts;
   std::vector<Ahead::Run> runs = compared(scene);
   const bool fitted = fits_run(scene);
-  if (runs.empty() && wanted.empty() && scene.film.marks.empty() && !fitted) return {};
+  if (runs.empty() && wanted.empty() && scene.film.marks.empty() && !fitted) {
+    if (scene.look.type_scale > 1 || !scene.film.titles.captions.empty()) tell_crowded(scene, {});
+    return {};
+  }
   draw::Palette colours = draw::palette(scene.look.theme);
   if (scene.dimension() == 3) colours.ground = colours.room;  // as the page in space
   const sim::Rational rate = std::visit([](const auto& world) { return world.model.rate; }, scene.world);
@@ -461,8 +475,9 @@ Ahead ahead(const scene::Scene& scene) {
     if (watched.empty()) watched.emplace_back();
     const draw::Scales given = given_scales(scene, watched.front().cast);
     all.annotations = annotations(scene, all, std::move(watched.front().marks), given);
+    tell_never_seen(scene, {all.annotations});
   }
-  if (!all.runs) tell_crowded(scene, depictor(scene, all).layout());
+  tell_crowded(scene, all);
   return all;
 }
 

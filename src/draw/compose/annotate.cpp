@@ -81,6 +81,10 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
                   double inside) {
   std::vector<Arrow> arrows;
   offer(tail, tip, view_.window(), arrow_, arrows);
+  if (how_.ranges) {
+    double& longest = (*how_.ranges)[key].longest;
+    longest = std::max(longest, (tip - tail).norm());
+  }
   if (arrows.empty()) return false;
   arrows[0].hang = hang_;
   arrows[0].bare = bare(arrows[0].tail, arrows[0].tip);

@@ -75,6 +75,7 @@ struct WordKey {
 /// The values that a label shows over a run.
 struct ValueRange {
   double low = 1e300, high = -1e300;
+  double longest = 0;  // page units: of its arrow
 };
 
 /// Words that could stand at any of `places`, as in a survey of a film: the index of a place means the same
@@ -85,7 +86,7 @@ struct Offered {
   Point anchor;
   std::vector<Placing::Candidate> places;
   std::optional<std::pair<Point, Point>> arrow{};  // from tail to tip: that it names, and does not pass over
-  bool read = true;                                // as strong as words need to be
+  bool legible = true;  // strong enough to be read
 };
 
 /// Of the sizes of two labels together: nearer than that they lie on each other.

@@ -30,6 +30,7 @@ constexpr double kHeadWide = 10;     // page units: of an arrow's head, which is
 constexpr double kPathError = 0.2;   // page units
 constexpr double kCurveError = 0.3;  // of a path's error: of the points among which the needed ones are found
 constexpr double kFaintest = 0.22;   // of a path's oldest end
+constexpr double kArrowSeen = 0.2;  // page units: of less an arrow is none
 constexpr double kShared = 4000;     // points: of a second of lying on another label
 constexpr double kPassing =
     0.4;  // of the time that a label is shown: for less than that it lies on others in passing
@@ -499,8 +500,8 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
   }
   paths_.resize(marks_.paths.size());
 
-  std::map<int, double> never;  // vectors and the largest value of each
-  std::set<int> read;
+  std::map<int, double> largest;  // of the vectors whose arrows are drawn
+  std::set<int> legible;
   // first what values there are, then where their labels may stand
   for (int panel = 0; panel < artist.panels(); ++panel) {
     LabelPlan plan;
@@ -530,11 +531,11 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
                how);
     }
     for (const auto& [key, range] : plan.ranges)
-      if (key.kind == WordKey::vector)
-        never[key.index] = std::max({never[key.index], std::abs(range.low), std::abs(range.high)});
+      if (key.kind == WordKey::vector && range.longest > kArrowSeen)
+        largest[key.index] = std::max({largest[key.index], std::abs(range.low), std::abs(range.high)});
     for (const std::vector<Offered>& sample : offered)
       for (const Offered& each : sample)
-        if (each.key.kind == WordKey::vector && each.read) read.insert(each.key.index);
+        if (each.key.kind == WordKey::vector && each.legible) legible.insert(each.key.index);
     plan.courses = courses(offered, films, lettering_.point,
                            kSpeed * fps * lettering_.point / film_lettering(1, 1).point);
     // lines behind bodies are not among what is avoided
@@ -542,8 +543,8 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
       for (auto& [key, course] : plan.courses) course.covers = true;
     plans_.push_back(std::move(plan));
   }
-  std::erase_if(never, [&](const auto& each) { return read.contains(each.first) || !(each.second > 0); });
-  never_seen_.assign(never.begin(), never.end());
+  std::erase_if(largest, [&](const auto& each) { return legible.contains(each.first); });
+  never_seen_.assign(largest.begin(), largest.end());
 }
 
 std::vector<WorldLine> Annotations::lines(const sim::Snapshot& now, double film) const {

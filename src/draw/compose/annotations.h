@@ -46,8 +46,9 @@ class Annotations {
   /// Arrows and words over a panel's picture.
   void draw(int panel, const Projection& projection, const sim::Snapshot& now, double film, List& list) const;
 
-  /// The arrows with words that are too short to be seen at every instant of the run though they are not
-  /// zero: numbers of the marks' vectors, and the largest value of each, of its quantity's unit.
+  /// The arrows that are there and whose words are never strong enough to be read, as the arrows are too
+  /// short, at the instants that the plan looks at: numbers of the marks' vectors, and the largest value of
+  /// each, of its quantity's unit.
   const std::vector<std::pair<int, double>>& never_seen() const { return never_seen_; }
 
   const Scales& scales() const { return scales_; }

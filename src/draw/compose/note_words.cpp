@@ -36,8 +36,8 @@ constexpr double kLeaves = 1.5;     // times as fast as what they name words lea
 constexpr double kLedAcross = 12;   // points: of a leader across an arrow or over another body
 constexpr double kNameCovered = 6;  // as against the cost of other words over something
 
-constexpr std::uint8_t kRead = 128;   // opacity from which on words are read
-constexpr std::uint8_t kPlate = 150;  // how much of what lies under the words of a film is covered
+constexpr std::uint8_t kLegible = 128;  // opacity from which on words are read
+constexpr std::uint8_t kPlate = 150;    // how much of what lies under the words of a film is covered
 
 using sim::Vec3;
 
@@ -451,8 +451,9 @@ void Notes::offer_places() {
            low.y() < page.y + page.height;
   };
   for (Word& word : words_) {
-    Offered offered{word.key,   size(word.set),           word.anchor, std::move(word.places),
-                    word.arrow, word.set.color.a >= kRead};
+    Offered offered{word.key,    size(word.set),
+                    word.anchor, std::move(word.places),
+                    word.arrow,  word.set.color.a >= kLegible};
     if (!how_.ranges)
       for (Placing::Candidate& each : offered.places) {
         each.center = on_page(word, each.center);
@@ -464,7 +465,7 @@ void Notes::offer_places() {
         double cost = placing_.cost(offered.size, each);
         each.clear = cost <= each.cost;
         if (each.leader)
-          cost += placing_.leading(word.anchor, offered.size, each.center, kLedAcross * point_);
+          cost += placing_.leading(led_to(word, each.center), offered.size, each.center, kLedAcross * point_);
         // a name has room all around its body: it goes out of the way sooner
         each.cost += (word.key.kind == WordKey::name ? kNameCovered : 1) * (cost - each.cost);
       }
@@ -472,9 +473,16 @@ void Notes::offer_places() {
   }
 }
 
+// where the line from words ends: at what they name, of words behind an arrow at its tail
+Point Notes::led_to(const Word& word, const Point& center) {
+  if (!word.arrow) return word.anchor;
+  const auto& [tail, tip] = *word.arrow;
+  return (center - tail).dot(tip - tail) < 0 ? tail : word.anchor;
+}
+
 // a line from the words' edge to just before what they name
 void Notes::lead(const Word& word, const Point& center, double strength) {
-  const Point size = Notes::size(word.set), way = word.anchor - center;
+  const Point anchor = led_to(word, center), size = Notes::size(word.set), way = anchor - center;
   const double out = std::min(size.x() / 2 / std::max(std::abs(way.normalized().x()), 1e-9),
                               size.y() / 2 / std::max(std::abs(way.normalized().y()), 1e-9));
   const Point u = way.normalized();
@@ -482,7 +490,7 @@ void Notes::lead(const Word& word, const Point& center, double strength) {
   // as far as a body's outline, where it is that of one
   double inner = word.outline.empty() ? dot_radius_ : 0;
   for (std::size_t k = 0; k < word.outline.size(); ++k) {
-    const Point a = word.outline[k] - word.anchor,
+    const Point a = word.outline[k] - anchor,
                 d = word.outline[(k + 1) % word.outline.size()] - word.outline[k];
     const double across = u.x() * d.y() - u.y() * d.x();
     if (std::abs(across) < 1e-12) continue;
@@ -490,7 +498,7 @@ void Notes::lead(const Word& word, const Point& center, double strength) {
                  part = (a.x() * u.y() - a.y() * u.x()) / across;
     if (part >= 0 && part <= 1) inner = std::max(inner, -far);
   }
-  const Point to = word.anchor - (inner + 1.5 * point_) * u;
+  const Point to = anchor - (inner + 1.5 * point_) * u;
   Color line = word.set.color;
   line.a = std::uint8_t(std::lround(line.a * strength));
   if ((to - from).dot(u) > 2 * point_)

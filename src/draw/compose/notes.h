@@ -61,6 +61,7 @@ class Notes {
   Placing::Candidate planned(const Word& word, double& leader) const;
   Point on_page(const Word& word, const Point& center) const;
   void plate(const Point& center, const Point& size, std::uint8_t strength);
+  static Point led_to(const Word& word, const Point& center);
   void lead(const Word& word, const Point& center, double strength);
   static Hold hold(const Word& word, const Point& center);
   void offer_places();

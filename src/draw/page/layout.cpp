@@ -356,7 +356,7 @@ Layout lay_out(const sim::SceneInfo& cast, const Look& look, const Camera& camer
     }
   }
   layout.scale = scale(strip);
-  layout.left_high = layout.height - strip - band - around;
+  layout.room_height = layout.height - strip - band - around;
 
   // height that is left over goes above and below in equal parts; with a camera that moves, or an unbounded
   // world, the caption stays at the top

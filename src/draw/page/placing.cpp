@@ -44,6 +44,11 @@ double shared(const Rect& a, const Rect& b) {
   return w > 0 && h > 0 ? w * h : 0;
 }
 
+/// Whether two rectangles have a point in common.
+bool meet(const Rect& a, const Rect& b) {
+  return a.x <= b.x + b.width && b.x <= a.x + a.width && a.y <= b.y + b.height && b.y <= a.y + a.height;
+}
+
 /// Whether a convex polygon has a point, whichever way its corners go.
 bool inside(const std::vector<Point>& outline, const Point& p) {
   bool left = false, right = false;
@@ -139,7 +144,10 @@ double Placing::leading(const Point& anchor, const Point& size, const Point& cen
     if (const double part = at.dot(d); part > 0 && part < d.squaredNorm()) sum += crossing;
   }
   constexpr int kPieces = 8;
+  const Point low = anchor.cwiseMin(end), high = anchor.cwiseMax(end);
+  const Rect around{low.x(), low.y(), high.x() - low.x(), high.y() - low.y()};
   for (const Area& area : areas_) {
+    if (!meet(around, area.around)) continue;
     if (area.cost < crossing || inside(area.outline, anchor)) continue;
     int covered = 0;
     for (int i = 1; i <= kPieces; ++i)

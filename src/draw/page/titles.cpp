@@ -12,8 +12,9 @@ namespace obscura::draw {
 namespace {
 
 constexpr double kCardTitle = 62, kText = 32, kCaption = 32;  // em, page units at the weight 1
-constexpr double kLead = 1.35;                                // of a line
-constexpr double kAbove = 0.98;                               // of it, above its baseline
+constexpr double kLead = 1.35;                                // em: a line
+constexpr double kAbove = 0.98;                               // em: what a line takes above its baseline
+constexpr double kOffTall = 0.1;                              // em: from tall mathematics to what is beside
 constexpr double kFoot = 26;                                  // from the page's edge to the captions
 constexpr double kCaptionFade = 0.2;                          // s: captions come and go
 constexpr double kCaptionWidth = 0.86;                        // of the page
@@ -154,8 +155,10 @@ Titles laid_out(const Titles& titles, double aspect, double type_scale) {
     caption.room.clear();
     for (const std::string& line : caption.lines) {
       const Formula set = prose(line, Face::medium, size, {});
-      caption.room.emplace_back(std::max(kAbove * size, set.ascent),
-                                std::max((kLead - kAbove) * size, set.descent));
+      const auto room = [&](double usual, double own) {
+        return own > usual * size ? own + kOffTall * size : usual * size;
+      };
+      caption.room.emplace_back(room(kAbove, set.ascent), room(kLead - kAbove, set.descent));
     }
   }
   // the highest at one instant: one at which a caption begins

@@ -11,7 +11,7 @@ namespace {
 
 using sim::Vec3;
 
-constexpr double kUpright = 0.999;  // of a normal upwards: a floor's
+constexpr double kGround = 0.5;  // of a normal upwards, at least: the ground's
 
 /// Directions to the points of a small cubic lattice, one each: 98, at most 19 degrees apart, and the same
 /// numbers everywhere.
@@ -59,15 +59,20 @@ void OutmostPlaces::add(const sim::SceneInfo& cast, const sim::Snapshot& now) {
 }
 
 void OutmostPlaces::add_feet(const sim::SceneInfo& cast, const sim::Snapshot& now) {
-  all_.resize(directions().size());
-  for (const auto& wall : cast.walls) {
+  const sim::SceneInfo::Wall* ground = nullptr;
+  double level = kGround;
+  for (const sim::SceneInfo::Wall& wall : cast.walls) {
     const Vec3 up = wall.normal.normalized();
-    if (!(up.y() > kUpright)) continue;
-    for (std::size_t i = 0; i < cast.bodies.size() && i < now.bodies.size(); ++i) {
-      if (cast.bodies[i].fixed || cast.bodies[i].bare) continue;
-      const Vec3& at = now.bodies[i].position;
-      for (std::size_t k = 0; k < all_.size(); ++k) offer(k, at - (at - wall.point).dot(up) * up);
-    }
+    const bool higher = ground && up.y() == level && up.dot(wall.point - ground->point) > 0;
+    if (up.y() > level || higher) ground = &wall, level = up.y();
+  }
+  if (!ground) return;
+  const Vec3 up = ground->normal.normalized();
+  all_.resize(directions().size());
+  for (std::size_t i = 0; i < cast.bodies.size() && i < now.bodies.size(); ++i) {
+    if (cast.bodies[i].fixed || cast.bodies[i].bare) continue;
+    const Vec3& at = now.bodies[i].position;
+    for (std::size_t k = 0; k < all_.size(); ++k) offer(k, at - (at - ground->point).dot(up) * up);
   }
 }
 

@@ -12,7 +12,7 @@ class OutmostPlaces {
  public:
   /// Adds the forms of all bodies that are drawn, as they lie at an instant.
   void add(const sim::SceneInfo& cast, const sim::Snapshot& now);
-  /// Adds the places on the floor under them, where their drop-lines end.
+  /// Adds the places on the ground under them, where their drop-lines end: on the most upright of the walls.
   void add_feet(const sim::SceneInfo& cast, const sim::Snapshot& now);
   void add(const OutmostPlaces& other);
 

@@ -45,7 +45,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
 template <int D>
 bool Iterative<D>::collide(StepPart<D> step) {
   State<D>& state = step.state;
-  corrected_ = false, closing_rate_ = 0;
+  corrected_ = false, closing_rates_ = {};
   state.frozen.resize(model_.bodies.size()), state.quiet.resize(model_.bodies.size());
   joints_.prepare(state), joints_.clear_pushed();
   if (state.step == 0) joints_.project_initial_velocities(state);
@@ -56,9 +56,9 @@ template <int D>
 void Iterative<D>::wake(StepPart<D> step) {
   update_sleep(step);
   foresee_speeds(step);
-  closing_rate_ = closing_rate(step.h);
-  substeps_ = substeps_for(closing_rate_, step.h);
-  if (closing_rate_ * step.h > 1.0001 * kCloser * substeps_)
+  closing_rates_ = closing_rates(step.h);
+  substeps_ = substeps_for(closing_rates_.ruling, step.h);
+  if (closing_rates_.ruling * step.h > 1.0001 * kCloser * substeps_)
     step.state.limits_met.substeps.note(step.state.step);
   notes_.begin(step.state);
 }

@@ -53,9 +53,12 @@ class Iterative : public ContactSolver<D> {
   virtual bool find_contacts(StepPart<D> step) = 0;
   /// Wakes what contacts reach; in the first step sets at rest what begins in equilibrium.
   virtual void update_sleep(StepPart<D> step) = 0;
-  /// The closing rate of what touches or may within h s that says how many substeps the step has, in widths
-  /// of the narrower body, 1/s.
-  virtual double closing_rate(double h) const = 0;
+  /// How fast what touches or may within h s closes, in widths of the narrower body, 1/s: `most` at most;
+  /// `ruling` says how many substeps the step has.
+  struct ClosingRates {
+    double ruling = 0, most = 0;
+  };
+  virtual ClosingRates closing_rates(double h) const = 0;
 
   /// Features where bodies have moved since they were found.
   virtual void renew_contacts(StepPart<D> part) = 0;
@@ -158,7 +161,7 @@ class Iterative : public ContactSolver<D> {
   AllowedOverlap allowed_overlap_;
   std::int64_t every_ = 1;               // steps between two pair searches
   int substeps_ = 1;                     // of this step
-  double closing_rate_ = 0;              // at the start of the step; 0: not known yet
+  ClosingRates closing_rates_;           // at the start of the step; 0: not known yet
   std::vector<double> bounding_radius_;  // of bodies, m
   std::vector<MovingBody<D>> moving_;    // one a body, and one more that never moves, for walls
   std::vector<MovingBody<D>> kept_;      // those of the step, while others are in moving_

@@ -102,9 +102,10 @@ void PlaneIterative::update_sleep(StepPart<D> step) {
   if (wake_struck(step.state, step.h)) update_pairs(step.state, true);
 }
 
-double PlaneIterative::closing_rate(double h) const {
+PlaneIterative::ClosingRates PlaneIterative::closing_rates(double h) const {
   double most = plane::closing_rate(batches_.data(), int(batches_.size()), poses_.data(), moving_.data(), h);
-  if (std::all_of(quicker_.begin(), quicker_.end(), [](double speed) { return speed == 0; })) return most;
+  if (std::all_of(quicker_.begin(), quicker_.end(), [](double speed) { return speed == 0; }))
+    return {most, most};
   // of what is moved, as fast as it becomes within the step
   for (const Pair& pair : pairs_.all()) {
     const double quicker = pair.b < 0 ? 0 : quicker_[pair.a] + quicker_[pair.b];
@@ -119,7 +120,7 @@ double PlaneIterative::closing_rate(double h) const {
         most = std::max(most, closes * g.per_width[lane]);
     }
   }
-  return most;
+  return {most, most};
 }
 
 void PlaneIterative::report(StepPart<D> step) {
@@ -296,7 +297,7 @@ void PlaneIterative::settle_contacts() {
 void PlaneIterative::settle_all() {
   const int count = int(batches_.size());
   const bool follows = awake_pairs_ <= kFewPairs;
-  active_bodies_.settled = settled_rate(closing_rate_), active_bodies_.groups.clear();
+  active_bodies_.settled = settled_rate(closing_rates_.most), active_bodies_.groups.clear();
   const auto activate = [&] {
     active_bodies_.bodies.assign(turns_.size() + 1, plane::ActiveBodies::kNow);
     active_bodies_.bodies.back() = 0;

@@ -36,7 +36,7 @@ class PlaneIterative final : public Iterative<2> {
   bool find_contacts(StepPart<D> step) override;
   bool wake_struck(State<D>& state, double h);
   void update_sleep(StepPart<D> step) override;
-  double closing_rate(double h) const override;
+  ClosingRates closing_rates(double h) const override;
   void renew_contacts(StepPart<D> part) override;
   void move_unconstrained(StepPart<D> part) override;
   BodyMotion<D> begun(int body) const override;

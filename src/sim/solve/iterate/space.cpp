@@ -66,8 +66,10 @@ void SpaceIterative::update_sleep(StepPart<D> step) {
 }
 
 // how fast those close that touch, or may within h s, in widths of the narrower body, 1/s
-double SpaceIterative::closing_rate(double h) const {
+SpaceIterative::ClosingRates SpaceIterative::closing_rates(double h) const {
   const int n = int(model_.bodies.size());
+  std::size_t near = 0;
+  double most = 0;
   rates_.clear();
   for (const ContactConstraint& touch : touches_) {
     const Vec<D> u = slip(touch);
@@ -81,10 +83,11 @@ double SpaceIterative::closing_rate(double h) const {
     }
     // what is moved, as fast as it becomes within the step
     if (!quicker_.empty()) closes += quicker_[touch.a] + (touch.b < n ? quicker_[touch.b] : 0);
-    if (closes > 0 && (touch.gap - h * closes) * touch.per_width < kNearly)
-      rates_.push_back(closes * touch.per_width);
+    if (!((touch.gap - h * closes) * touch.per_width < kNearly)) continue;
+    ++near;
+    if (closes > 0) rates_.push_back(closes * touch.per_width), most = std::max(most, rates_.back());
   }
-  return ruling_rate(rates_, touches_.size());
+  return {ruling_rate(rates_, near), most};
 }
 
 // impulses of a substep that is not the last

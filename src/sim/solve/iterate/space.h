@@ -38,7 +38,7 @@ class SpaceIterative final : public Iterative<3> {
  private:
   bool find_contacts(StepPart<D> step) override;
   void update_sleep(StepPart<D> step) override;
-  double closing_rate(double h) const override;
+  ClosingRates closing_rates(double h) const override;
   void renew_contacts(StepPart<D> part) override;
   void move_unconstrained(StepPart<D> part) override;
   BodyMotion<D> begun(int body) const override { return stances_[std::size_t(body)]; }

@@ -19,7 +19,7 @@ constexpr double kRounding = 1e-12;  // rad
 }  // namespace
 
 // whether bodies come farther in a substep than pairs are to approach in one, however many the step has
-bool SpaceIterative::too_fast() const { return closing_rate_ > kCloser * kMostSubsteps; }
+bool SpaceIterative::too_fast() const { return closing_rates_.most > kCloser * kMostSubsteps; }
 
 // how far a body may come in a step, m
 double SpaceIterative::margin(int body, double h) const {
