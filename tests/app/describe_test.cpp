@@ -111,6 +111,20 @@ start = "cut"
   EXPECT_THAT(run.out, Not(HasSubstr("breaks")));
 }
 
+// Cards say what they say where the run stands still for them.
+TEST_F(Describe, TellsWhatCardsSay) {
+  scene(
+      "duration = 2\n[room]\nsize = [4, 3]\n[[ball]]\nname = \"ball\"\nradius = 0.2\nposition = [2, 2.5]\n"
+      "[film]\nspeed = [{ time = 0.3, freeze = 1 }]\n[[film.card]]\ntitle = \"Part one\"\n"
+      "text = \"a ball falls by $g$\"\n[[film.card]]\ntitle = \"Part two\"\ntime = 1.5\nlasting = 1\n"
+      "[[film.card]]\ntext = \"The end\"\ntime = 2\nlasting = 1\n");
+  const Outcome run = obscura("describe scene.toml");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("A card says at 0 s: \"Part one: a ball falls by g\""));
+  EXPECT_THAT(run.out, HasSubstr("A card says at 1.5 s: \"Part two\""));
+  EXPECT_THAT(run.out, HasSubstr("A card says at 2 s: \"The end\""));
+}
+
 // In space, along which axes: what is to the right is the camera's business.
 TEST_F(Describe, TellsAlongWhichAxesItFliesInSpace) {
   scene(

@@ -30,6 +30,7 @@ using namespace telling;
 
 namespace {
 
+constexpr double kSameInstant = 1e-6;         // s of the film
 constexpr std::int64_t kMostSteps = 100'000;  // read; of longer runs every second, third, ...
 constexpr std::size_t kToldSingly = 6;        // bodies, impacts: told one by one
 constexpr std::size_t kMostHappenings = 300;  // impacts that are listed
@@ -378,6 +379,17 @@ std::vector<std::string> Account::events() const {
   };
   for (const draw::Caption& caption : scene_.film.titles.captions)
     says(caption.shown.start, draw::in_letters(caption.text));
+  // cards stand where the run stands still for them
+  for (const draw::Card& card : scene_.film.titles.cards)
+    for (const draw::Pace::Frozen& still : scene_.film.speed.frozen()) {
+      const double at = sim::value(still.world);
+      if (std::abs(sim::value(still.film) - card.begin) > kSameInstant || at > last_->time) continue;
+      const std::string between = card.title.empty() || card.text.empty() ? "" : ": ";
+      told.emplace_back(at, fmt::format("A card says at {}: \"{}\"", when(at),
+                                        scene::one_line(draw::in_letters(card.title) + between +
+                                                        draw::in_letters(card.text))));
+      break;
+    }
   // of labels those that come at an instant
   for (const draw::Marks::Label& label : scene_.film.marks.labels)
     if (label.shown.start && label.quantity.empty())
