@@ -86,7 +86,7 @@ struct Offered {
   Point anchor;
   std::vector<Placing::Candidate> places;
   std::optional<std::pair<Point, Point>> arrow{};  // from tail to tip: that it names, and does not pass over
-  bool legible = true;  // strong enough to be read
+  bool legible = true;                             // strong enough to be read
 };
 
 /// Of the sizes of two labels together: nearer than that they lie on each other.

@@ -30,7 +30,7 @@ constexpr double kHeadWide = 10;     // page units: of an arrow's head, which is
 constexpr double kPathError = 0.2;   // page units
 constexpr double kCurveError = 0.3;  // of a path's error: of the points among which the needed ones are found
 constexpr double kFaintest = 0.22;   // of a path's oldest end
-constexpr double kArrowSeen = 0.2;  // page units: of less an arrow is none
+constexpr double kArrowSeen = 0.2;   // page units: of less an arrow is none
 constexpr double kShared = 4000;     // points: of a second of lying on another label
 constexpr double kPassing =
     0.4;  // of the time that a label is shown: for less than that it lies on others in passing

@@ -23,7 +23,7 @@ struct Layout {
   double scale = 1;               // page units a metre, where the camera fits
   Point middle;                   // where the centre of what is fitted lies
   sim::Vec3 center = sim::Vec3::Zero();  // and which place of the world it is
-  double room_height = 0;                  // page units: what caption, captions and charts leave to the world
+  double room_height = 0;                // page units: what caption, captions and charts leave to the world
   bool closed = false;                   // the walls close
   bool caption = false;
   std::vector<Text> words;  // title and subtitle

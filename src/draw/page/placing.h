@@ -33,14 +33,15 @@ class Placing {
   /// The cost of a candidate by the lines and areas that are to be avoided, and its own; neither labels that
   /// have a place already nor the page's edge count.
   double cost(const Point& size, const Candidate& candidate) const;
-  /// The cost of a leader from words of `size` to what they name at `anchor`: `crossing` for each arrow
-  /// that it crosses and each area that it runs through, and of these their share of it too. Not for what it
-  /// begins in, nor for areas that cost less than a crossing.
+  /// The cost, page units, of a leader from words of `size` to what they name at `anchor`: `crossing` for
+  /// each arrow that it crosses and each area that it runs through, and of these their share of it too. Not
+  /// for what it begins in, nor for areas that cost less than a crossing.
   double leading(const Point& anchor, const Point& size, const Point& center, double crossing) const;
 
   /// Places around a point, and farther off with a leader; beside an arrow.
   static std::vector<Candidate> around(const Point& at, double gap, const Point& size, double unit);
-  /// `fixed`: first those to the right of its way, however it turns; else first those at its upper side.
+  /// `fixed`: first those to the right of its way, however it turns, and farther off and behind its tail with
+  /// a leader too; else first those at its upper side.
   static std::vector<Candidate> along(const Point& tail, const Point& tip, double gap, const Point& size,
                                       double unit, bool fixed = false);
 

@@ -78,9 +78,9 @@ inline constexpr double kInTime = 1e-9;
 inline constexpr double kTogether = 1e-6;
 
 /// The closing rate that says how many substeps a step has, 1/s: of many contact points the largest but for a
-/// two-hundredth of them, which may close twice as fast, so that a heap of a thousand is not divided as finely
-/// as its fastest pair asks for. `rates`: of the points that close; they are sorted anew. `contacts`: how many
-/// points touch or nearly do.
+/// two-hundredth of them, which may close twice as fast, so that a heap of a thousand is not divided as
+/// finely as its fastest pair asks for. `rates`: of the points that close; they are reordered. `contacts`:
+/// how many points touch or nearly do.
 inline double ruling_rate(std::span<double> rates, std::size_t contacts) {
   constexpr std::size_t kOneOf = 200;
   constexpr double kFaster = 2;
