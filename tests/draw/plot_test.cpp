@@ -471,6 +471,63 @@ TEST(Charts, NamesWithoutRoomAreAKey) {
   EXPECT_EQ(key_of(0.95), 2u);
 }
 
+/// Lines that pass each other all the time have a key: names beside them would come and go. Lines that pass
+/// each other now and then have not.
+TEST(Charts, NamesOfLinesThatWindAboutEachOtherAreAKey) {
+  const auto shown = [](double periods) {
+    Plot plot;
+    for (int i = 0; i < 10; ++i) {
+      Series line;
+      line.label = "\"name\"";
+      for (int k = 0; k <= 1000; ++k) {
+        line.values.push_back(std::sin(2 * std::numbers::pi * (periods * k / 1000.0 + 0.1 * i)));
+        if (i == 0) plot.times.push_back(0.004 * k);
+      }
+      plot.lines.push_back(line);
+    }
+    Chart chart;
+    chart.share = 0.5;
+    return Charts({chart}, {plot}, palette(Theme::paper), 16.0 / 9, 4, {}, 0, 1).shown().front().area;
+  };
+  const PlotArea often = shown(8), seldom = shown(0.2);
+  EXPECT_EQ(often.key.size(), 10u);
+  EXPECT_EQ(often.last, 4);
+  EXPECT_TRUE(seldom.key.empty());
+  EXPECT_GT(often.top, seldom.top);
+}
+
+/// However little room an axis has, it has two numbers where they do not touch.
+TEST(Plot, AnAxisHasTwoNumbers) {
+  const auto numbers = [](double low, double high, double height) {
+    Plot plot = plot_of({low, high});
+    plot.range = {low, high};
+    const PlotArea area = plot_area(plot, {0, 0, 400, height}, 1);
+    std::vector<double> all = area.ticks;
+    for (std::size_t i = 1; i < all.size(); ++i)
+      EXPECT_GE(area.at(0, all[i - 1]).y() - area.at(0, all[i]).y(), 6.5 - 1e-9) << low << " to " << high;
+    return all;
+  };
+  EXPECT_THAT(numbers(0.15, 2.6, 60), testing::ElementsAre(1, 2));
+  EXPECT_THAT(numbers(0, 1.97, 39.3), testing::ElementsAre(0, 1.5));
+  EXPECT_THAT(numbers(-4.2, 4.4, 38.3), testing::ElementsAre(-4, 4));
+  for (double low = -3; low < 3; low += 0.37)
+    for (double width = 0.2; width < 10; width *= 1.3)
+      EXPECT_GE(numbers(low, low + width, 44).size(), 2u) << low << " to " << low + width;
+  // and along the other axis
+  for (double low = -3; low < 3; low += 0.37)
+    for (double width = 0.2; width < 10; width *= 1.3) {
+      Plot plot = plot_of({0, 1});
+      plot.lines[0].along = {low, low + width};
+      const PlotArea area = plot_area(plot, {0, 0, 110, 100}, 1);
+      List list;
+      draw_axes(plot, area, palette(Theme::paper), list);
+      const auto below = std::count_if(list.texts.begin(), list.texts.end(), [&](const Text& text) {
+        return text.at.y() > area.bottom + 4 && said(text).find_first_of("t/") == std::string::npos;
+      });
+      EXPECT_GE(below, 2) << low << " to " << low + width;
+    }
+}
+
 /// With an emphasis, a spring between what is grey recedes; one that holds what is to be looked at does not.
 TEST(Plot, LinksOfQuietBodiesRecede) {
   Look look;

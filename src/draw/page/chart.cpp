@@ -30,6 +30,7 @@ constexpr double kAround = 0.8;  // around a head, points
 constexpr double kMarkerAround =
     1.3;                         // the same of a marker with corners, whose edges are nearer to its middle
 constexpr double kFade = 0.008;  // of the run: how long before and after a name changes places it is faint
+constexpr double kMostUnseen = 0.08;  // of the run: names that are unseen for longer are a key
 
 // The rectangles of charts on a page.
 std::vector<Rect> places_of(const std::vector<Chart>& charts, double aspect, double foot) {
@@ -95,6 +96,7 @@ Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots,
     else
       widen(area);
   }
+  for (std::size_t i = 0; i < panels_.size(); ++i) place_names(panels_[i], rects[i], seconds);
   // those above each other show one time at one place
   for (const Chart::Place place : {Chart::Place::below, Chart::Place::right}) {
     std::vector<PlotArea*> areas;
@@ -102,7 +104,6 @@ Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots,
       if (panel.chart.place == place && panel.chart.against.empty()) areas.push_back(&panel.area);
     share_margins(areas);
   }
-  for (std::size_t i = 0; i < panels_.size(); ++i) place_names(panels_[i], rects[i]);
 }
 
 std::pair<double, double> Charts::room(const std::vector<Chart>& charts, double aspect) {
@@ -138,7 +139,7 @@ std::vector<std::vector<Point>> Charts::heads(const Panel& panel) {
   return all;
 }
 
-void Charts::place_names(Panel& panel, const Rect& rect) const {
+void Charts::place_names(Panel& panel, const Rect& rect, double seconds) const {
   PlotArea& area = panel.area;
   if (!named(panel.plot) || !area.key.empty()) return;
   const std::vector<std::vector<Point>> ends = heads(panel);
@@ -149,6 +150,11 @@ void Charts::place_names(Panel& panel, const Rect& rect) const {
       for (const Point& end : ends[k]) heights[k].push_back(end.y());
     const auto [low, high] = room_for_names(area);
     panel.names = names_beside(heights, area.heights, low, high);
+    if (panel.unseen() <= kMostUnseen) return;
+    // their places say nothing of whose they are
+    area = plot_area(panel.plot, rect, unit, true);
+    area.last = seconds;
+    panel.names = {};
     return;
   }
   std::vector<Point> sizes;
@@ -180,6 +186,13 @@ double Charts::Panel::seen(std::size_t line, double time) const {
   for (std::size_t i = 0; i < names.changes[line].size(); ++i)
     most = std::min(most, std::abs(time - change(line, i)) / fade);
   return most;
+}
+
+double Charts::Panel::unseen() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < names.changes.size(); ++i)
+    for (const double time : plot.times) sum += 1 - std::min(1.0, seen(i, time));
+  return sum / double(std::max<std::size_t>(1, names.changes.size() * plot.times.size()));
 }
 
 double Charts::Panel::offset(std::size_t line, double time) const {

@@ -83,8 +83,10 @@ class Charts {
     double change(std::size_t line, std::size_t number) const;
     /// How well its name is seen, 0 to 1.
     double seen(std::size_t line, double time) const;
+    /// For which part of the run names are not seen, of all names together.
+    double unseen() const;
   };
-  void place_names(Panel& panel, const Rect& rect) const;
+  void place_names(Panel& panel, const Rect& rect, double seconds) const;
   static std::vector<std::vector<Point>> heads(const Panel& panel);
   std::vector<Panel> panels_;
   Palette colours_;

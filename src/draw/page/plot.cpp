@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "draw/page/line_style.h"
@@ -27,6 +28,8 @@ constexpr double kFromZero = 0.4;   // of the largest value: what changes by les
 constexpr double kConstant = 1e-3;  // and what changes by less than this with it
 
 constexpr double kTicksApart = 9;  // points: from a number of the values' axis to the next at least
+constexpr double kTwoApart = 6.5;  // the same where there are two: their digits do not touch
+constexpr int kMostSteps = 20;     // of an axis: that are looked at for two numbers
 constexpr double kEachTick = 18;   // points: of the values' axis
 constexpr double kAboveEnd = 3;    // points: how high above the axis the middle of a name at an end is
 constexpr double kLeft = 0.05;  // of the width: a line that ends so far from the right is named where it ends
@@ -43,8 +46,8 @@ struct Ticks {
   std::vector<std::string> numbers{};  // as mathematics
 };
 
-/// At powers of ten; ticks at 2, ..., 9 in between where there are few. `apart`: of numbers, of the axis's
-/// length.
+/// At powers of ten; ticks at 2, ..., 9 in between where there are few, and of these the first and the last
+/// with numbers where there would be less than two. `apart`: of numbers, of the axis's length.
 Ticks decades(double low, double high, double apart) {
   Ticks all;
   const int first = int(std::floor(std::log10(low) + 1e-9)), last = int(std::ceil(std::log10(high) - 1e-9));
@@ -66,6 +69,13 @@ Ticks decades(double low, double high, double apart) {
       }
     }
   }
+  std::vector<double> round = all.marks;
+  round.insert(round.end(), all.between.begin(), all.between.end());
+  std::sort(round.begin(), round.end());
+  if (all.marks.size() > 1 || round.size() < 2 || decade * std::log10(round.back() / round.front()) < apart)
+    return all;
+  all.marks = {round.front(), round.back()}, all.between = {round.begin() + 1, round.end() - 1};
+  all.numbers = as_numbers(all.marks);
   return all;
 }
 
@@ -80,6 +90,24 @@ double widest(const Ticks& ticks, double point) {
   for (const std::string& each : ticks.numbers)
     all = std::max(all, formula(each, kPlotType * point, {}).width);
   return all;
+}
+
+/// Two round numbers for an axis that has room for no more: zero and another, or two far from each other, of
+/// the coarsest steps at which they find room; one where none do. `fit`: whether two numbers do.
+std::vector<double> two_of(double low, double high,
+                           const std::function<bool(const std::vector<double>&)>& fit) {
+  const auto is_zero = [&](double x) { return std::abs(x) < 1e-9 * (high - low); };
+  for (int steps = 1; steps <= kMostSteps; ++steps) {
+    const std::vector<double> all = ticks(low, high, steps);
+    if (all.size() < 2) continue;
+    const double first = all.front(), last = all.back();
+    const bool zero = std::any_of(all.begin(), all.end(), is_zero);
+    const std::vector<double> from_zero = last >= -first ? std::vector{0.0, last} : std::vector{first, 0.0};
+    if (zero && fit(from_zero)) return from_zero;
+    if (fit({first, last})) return {first, last};
+  }
+  const bool zero = low <= 0 && high >= 0;
+  return {zero ? 0.0 : ticks(low, high, 1).front()};
 }
 
 /// Those of an axis of this width, in page units: three at least where their numbers find room, and fewer
@@ -98,8 +126,8 @@ Ticks along_axis(double low, double high, double width, double point) {
     break;
   }
   for (int count = usual; count > 1 && !fit(few); --count) few = numbered(ticks(low, high, count - 1));
-  if (!fit(few)) few.marks.resize(1), few.numbers.resize(1);
-  return few;
+  if (few.marks.size() > 1 && fit(few)) return few;
+  return numbered(two_of(low, high, [&](const std::vector<double>& both) { return fit(numbered(both)); }));
 }
 
 /// Those of the values from `low` to `high` on an axis of this height: so few that their numbers do not
@@ -107,13 +135,12 @@ Ticks along_axis(double low, double high, double width, double point) {
 std::vector<double> up_axis(double low, double high, int usual, double height, double point) {
   for (int count = usual; count > 0; --count) {
     std::vector<double> found = ticks(low, high, count);
-    if (found.size() < 2 || (found[1] - found[0]) / (high - low) * height >= kTicksApart * point)
+    if (found.size() > 1 && (found[1] - found[0]) / (high - low) * height >= kTicksApart * point)
       return found;
   }
-  // one number, zero's where it is there
-  const std::vector<double> all = ticks(low, high, 1);
-  const bool zero = low <= 0 && high >= 0;
-  return {zero ? 0.0 : all.front()};
+  return two_of(low, high, [&](const std::vector<double>& both) {
+    return (both[1] - both[0]) / (high - low) * height >= kTwoApart * point;
+  });
 }
 
 Ticks upward(const PlotArea& area) {
