@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
+#include "draw/compose/annotations.h"
 #include "draw/compose/comparison.h"
 #include "draw/made.h"
 #include "draw/page/layout.h"
@@ -146,6 +148,60 @@ TEST(Labels, NamesOfRunsOverEachOtherAreMathematics) {
   // one below the other, and no plate over another
   EXPECT_GT(said(list, "RK4 ")->at.y(), said(list, "Euler")->at.y() + 20);
   EXPECT_GT(said(list, "a")->at.y() - 20, said(list, "RK4 ")->at.y());
+}
+
+// how much of a line lies in a text's rectangle
+double covered(const Text& text, const Point& a, const Point& b) {
+  const double wide = shape(text).width, tall = text.spans[0].size;
+  constexpr int kPieces = 200;
+  int within = 0;
+  for (int k = 0; k <= kPieces; ++k) {
+    const Point p = a + (b - a) * k / kPieces;
+    within += p.x() > text.at.x() && p.x() < text.at.x() + wide && p.y() < text.at.y() &&
+              p.y() > text.at.y() - 0.7 * tall;
+  }
+  return (b - a).norm() * within / (kPieces + 1);
+}
+
+/// The words of an arrow that goes round past two others do not go over these with it.
+TEST(Labels, OfAnArrowThatGoesRoundKeepOffTheOthers) {
+  Made made = room(8, 4.5);
+  const int it = made.body(ShapeKind::ball, {4, 2.3, 0}, 0.15);
+  Marks marks;
+  for (const Quantity quantity : {Quantity::drag, Quantity::velocity, Quantity::field}) {
+    Marks::Vector vector;
+    vector.quantity = quantity, vector.body = it;
+    vector.label = quantity == Quantity::drag       ? "D = {:.1}"
+                   : quantity == Quantity::velocity ? "v = {:.1}"
+                                                    : "F = {:.1}";
+    marks.vectors.push_back(vector);
+  }
+  RunAhead ahead;
+  for (int k = 0; k <= 90; ++k) {
+    sim::Snapshot now = made.now;
+    now.time = k / 30.0;
+    const double turn = 2 * std::numbers::pi * now.time / 1.5;
+    now.bodies[0].drag = {0, -1, 0}, now.bodies[0].velocity = {1, 0, 0};
+    now.bodies[0].field = sim::Vec3(std::cos(turn), std::sin(turn), 0);
+    ahead.moments.push_back(now), ahead.films.push_back(now.time);
+  }
+  const Illustrator artist = made.depictor();
+  const Annotations annotations(marks, artist, ahead, {.velocity = 0.8, .force = 0.8}, 60, 0);
+  int over = 0, unseen = 0;
+  for (std::size_t k = 0; k < ahead.moments.size(); ++k) {
+    const Projection projection = artist.projection(0, ahead.moments[k]);
+    List list;
+    annotations.draw(0, projection, ahead.moments[k], ahead.films[k], list);
+    const Text* text = said(list, "F");
+    if (!text) {
+      ++unseen;
+      continue;
+    }
+    const auto page = [&](double x, double y) { return projection.page({x, y, 0}); };
+    over += covered(*text, page(4, 2.3), page(4, 1.5)) + covered(*text, page(4, 2.3), page(4.8, 2.3)) > 6;
+  }
+  EXPECT_LE(over, 4) << "of " << ahead.moments.size();
+  EXPECT_LE(unseen, 4) << "of " << ahead.moments.size();
 }
 
 }  // namespace

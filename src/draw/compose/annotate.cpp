@@ -27,6 +27,7 @@ constexpr double kTail = 1.7;           // widths of an arrow: radius of the dot
 constexpr double kFull = 0.28;      // of an arrow's growth: from here on its words are as strong as others
 constexpr double kOutOfBall = 0.6;  // of a ball's radius: how far beyond it words of an arrow within it end
 
+constexpr double kOnArrow = 16, kOnArrowInPrint = 4;   // of each unit of an arrow under words
 constexpr std::size_t kManyNames = 40;                 // from here on a name stands above its body or below
 constexpr double kBeside = 2.3, kBesideInPrint = 2.1;  // gaps: from an arrow to its words
 constexpr double kNameGap = 1.3;                       // from a body to its name, as against others
@@ -78,7 +79,7 @@ double Notes::bare(const Point& tail, const Point& tip) {
 }
 
 bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink,
-                  double inside) {
+                  const AroundTail& around) {
   std::vector<Arrow> arrows;
   offer(tail, tip, view_.window(), arrow_, arrows);
   if (how_.ranges) {
@@ -86,13 +87,18 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
     longest = std::max(longest, (tip - tail).norm());
   }
   if (arrows.empty()) return false;
+  if (how_.ranges) {
+    const Point way = tip - tail;
+    const double turn = std::atan2(-way.y(), way.x()) / (2 * std::numbers::pi);
+    (*how_.ranges)[key].ways |= 1u << (int(std::floor(8 * turn)) & 7);
+  }
   arrows[0].hang = hang_;
   arrows[0].bare = bare(arrows[0].tail, arrows[0].tip);
   // those of a film are drawn together: few batches
   if (!film()) draw_arrows(arrows, arrow_, colours_.room, ink, list_);
   arrows_.push_back(arrows[0]), inks_.push_back(ink);
   const Point end = film() ? arrows[0].tip : tip;
-  placing_.avoid(tail, end, 4, true);
+  placing_.avoid(tail, end, film() ? kOnArrow : kOnArrowInPrint, true);
   // in print its halo, too: words that touch it look cut
   if (const Point way = end - tail; !film() && way.norm() > 0)
     for (const double side : {1.0, -1.0}) {
@@ -103,12 +109,19 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   if (film()) fade(label, (arrows[0].grow - kSmallest) / (kFull - kSmallest));
   // those of one that ends within its ball stand where it would leave it; which place they have is chosen for
   // the others
-  const double length = (end - tail).norm(), reach = (1 + kOutOfBall) * inside;
+  const double length = (end - tail).norm(), reach = (1 + kOutOfBall) * around.ball;
   const bool within = film() && !how_.survey && length < reach;
   const Point beyond = within ? Point(tail + reach / length * (end - tail)) : end;
-  word(key, label,
-       Placing::along(tail, beyond, (film() ? kBeside : kBesideInPrint) * gap_, size(label), point_, film()),
-       (tail + end) / 2, std::pair(tail, end));
+  const double gap = (film() ? kBeside : kBesideInPrint) * gap_;
+  std::vector<Placing::Candidate> places = Placing::along(tail, beyond, gap, size(label), point_, film());
+  if (how_.plan) {
+    const auto range = how_.plan->ranges.find(key);
+    if (range != how_.plan->ranges.end() && range->second.swings())
+      for (const Placing::Candidate& still :
+           Placing::beside_swing(tail, around.reach, range->second.longest, gap, size(label), point_))
+        places.push_back(still);
+  }
+  word(key, label, std::move(places), (tail + end) / 2, std::pair(tail, end));
   return true;
 }
 
@@ -258,6 +271,14 @@ void Notes::turn(const WordKey& key, const Marks::Vector& vector, const Reading&
   word(key, label, places, center);
 }
 
+AroundTail Notes::around(const Marks::Vector& vector, const Reading& reading) const {
+  if (vector.body < 0 || (reading.tail - now_.bodies[std::size_t(vector.body)].position).norm() >= 1e-9)
+    return {};
+  const sim::SceneInfo::Body& body = cast_.bodies[std::size_t(vector.body)];
+  const double scale = view_.scale_at(reading.tail);
+  return {scale * body.radius, scale * (body.radius > 0 ? body.radius : body.half.norm())};
+}
+
 void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
   const Color ink = color_of(vector, colours_);
   const std::vector<Reading> all = readings(vector, cast_, now_);
@@ -296,10 +317,8 @@ void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
                                                                 : 1.0;
       const Vec3 tip = reading.tail + length * reading.value;
       hang(reading.tail, tip);
-      double inside = 0;
-      if (vector.body >= 0 && (reading.tail - now_.bodies[std::size_t(vector.body)].position).norm() < 1e-9)
-        inside = cast_.bodies[std::size_t(vector.body)].radius * view_.scale_at(reading.tail);
-      if (view_.before(tip)) arrow(key, view_.page(reading.tail), view_.page(tip), label_set, ink, inside);
+      if (view_.before(tip))
+        arrow(key, view_.page(reading.tail), view_.page(tip), label_set, ink, around(vector, reading));
     }
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <compare>
 #include <limits>
 #include <map>
@@ -76,6 +77,9 @@ struct WordKey {
 struct ValueRange {
   double low = 1e300, high = -1e300;
   double longest = 0;  // page units: of its arrow
+  unsigned ways = 0;   // the eighths of a circle in which its arrow points, as bits
+  /// Whether the arrow turns by more than a right angle.
+  bool swings() const { return std::popcount(ways) > 2; }
 };
 
 /// Words that could stand at any of `places`, as in a survey of a film: the index of a place means the same

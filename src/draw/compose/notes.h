@@ -13,6 +13,12 @@
 
 namespace obscura::draw {
 
+/// Of the body in the middle of which an arrow begins, page units: the radius of a ball, and how far any
+/// body reaches.
+struct AroundTail {
+  double ball = 0, reach = 0;
+};
+
 /// Puts marks on one page (draw/compose/annotate.h): lines at once, words when all lines are known.
 class Notes {
  public:
@@ -31,6 +37,7 @@ class Notes {
 
  private:
   void mark_tails();
+  AroundTail around(const Marks::Vector& vector, const Reading& reading) const;
   std::vector<Point> steady_arrows(int body, const Marks& marks) const;
   struct Word {
     WordKey key;
@@ -71,7 +78,7 @@ class Notes {
   bool on_body(const Point& p);
   double bare(const Point& tail, const Point& tip);
   bool arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink,
-             double inside = 0);
+             const AroundTail& around = {});
   void stroke(const std::vector<Point>& line, double width, Color color, double weight);
   void stroke_through(const std::vector<sim::Vec3>& way, double width, Color color, double weight);
   void by_nodes(const std::vector<sim::Vec3>& way);

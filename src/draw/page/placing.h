@@ -44,6 +44,10 @@ class Placing {
   /// a leader too; else first those at its upper side.
   static std::vector<Candidate> along(const Point& tail, const Point& tip, double gap, const Point& size,
                                       double unit, bool fixed = false);
+  /// Places with a leader around an arrow's tail, which do not turn with it: `reach` from the tail at least,
+  /// and as far as the arrow is at its longest.
+  static std::vector<Candidate> beside_swing(const Point& tail, double reach, double longest, double gap,
+                                             const Point& size, double unit);
 
  private:
   Rect rect_of(const Point& size, const Candidate& candidate) const;
