@@ -138,6 +138,28 @@ TEST_F(Describe, TellsAlongWhichAxesItFliesInSpace) {
 }
 
 // A body that turns on the spot is not said to stand still; about its middle axis it turns over.
+TEST_F(Describe, WallsOfSpaceHaveTheirNames) {
+  scene(R"(duration = 1
+[room]
+size = [4, 4, 4]
+gravity = [0, 0, 0]
+[[ball]]
+name = "a"
+radius = 0.1
+position = [0, 1, 0]
+velocity = [0, 0, -3]
+[[ball]]
+name = "b"
+radius = 0.1
+position = [1, 1, 0]
+velocity = [0, 0, 3]
+)");
+  const Outcome run = obscura("describe scene.toml");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("hits the back wall at"));
+  EXPECT_THAT(run.out, HasSubstr("hits the front wall at"));
+}
+
 TEST_F(Describe, TellsOfWhatTurns) {
   scene(
       "duration = 2\n[room]\nsize = [4, 3]\nwalls = \"none\"\ngravity = [0, 0]\n[[box]]\nname = \"wheel\"\n"

@@ -204,5 +204,56 @@ TEST(Labels, OfAnArrowThatGoesRoundKeepOffTheOthers) {
   EXPECT_LE(unseen, 4) << "of " << ahead.moments.size();
 }
 
+/// Two arrows on one line that point at each other stand side by side; in the picture of a film they would be
+/// a star.
+TEST(Labels, ArrowsThatMeetHeadOnStandSideBySide) {
+  const auto apart = [](double aside) {
+    Made made = room(8, 4.5);
+    Marks marks;
+    for (const double side : {-1.0, 1.0}) {
+      const int it = made.body(ShapeKind::ball, {4 + side, side > 0 ? 2 + aside : 2, 0}, 0.15);
+      made.now.bodies.back().drag = {-side, 0, 0};
+      Marks::Vector vector;
+      vector.quantity = Quantity::drag, vector.body = it;
+      marks.vectors.push_back(vector);
+    }
+    const Illustrator artist = made.depictor();
+    RunAhead ahead{{made.now}, {0}, {}, {}, {}};
+    const Annotations annotations(marks, artist, ahead, {.force = 1.2}, 60, 0);
+    const Projection projection = artist.projection(0, made.now);
+    List list;
+    annotations.draw(0, projection, made.now, 0, list);
+    double low = 1e300, high = -1e300;  // of the middles of heads and shafts
+    for (const Node& node : list.nodes) low = std::min(low, node.at.y()), high = std::max(high, node.at.y());
+    return high - low;
+  };
+  const double side_by_side = apart(0), with_room = apart(0.5);
+  EXPECT_GT(side_by_side, 6);
+  EXPECT_LT(side_by_side, 20);
+  EXPECT_GT(with_room, 40);
+}
+
+/// Axes lie under the plates of words, other arrows over them.
+TEST(Labels, LieOverAxes) {
+  Made made = room(8, 4.5);
+  Marks marks;
+  marks.axes = true;
+  Marks::Label label;
+  label.text = "E = 5 J", label.at.local = {0.7, 0, 0};
+  marks.labels.push_back(label);
+  const Illustrator artist = made.depictor();
+  RunAhead ahead{{made.now}, {0}, {}, {}, {}};
+  const Annotations annotations(marks, artist, ahead, {}, 60, 0);
+  List list;
+  annotations.draw(0, artist.projection(0, made.now), made.now, 0, list);
+  std::optional<std::size_t> plate, axis;
+  for (std::size_t i = 0; i < list.batches.size(); ++i) {
+    if (list.batches[i].kind == Kind::box) plate = i;
+    if (list.batches[i].kind == Kind::stroke || list.batches[i].kind == Kind::polygon) axis = i;
+  }
+  ASSERT_TRUE(plate && axis);
+  EXPECT_GT(*plate, *axis);
+}
+
 }  // namespace
 }  // namespace obscura::draw

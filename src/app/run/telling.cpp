@@ -111,6 +111,9 @@ std::string wall(const sim::SceneInfo& cast, int index) {
   if (n.y() < -0.999) return "the ceiling";
   if (n.x() > 0.999) return "the left wall";
   if (n.x() < -0.999) return "the right wall";
+  // only space has these
+  if (n.z() > 0.999) return "the back wall";
+  if (n.z() < -0.999) return "the front wall";
   return n.y() > 0.05 ? "the slope" : "a wall";
 }
 

@@ -22,6 +22,8 @@ constexpr double kBetweenArcs = 12;     // points
 constexpr double kFilmType = 24 / 8.5;  // page units a point at the weight 1, as of charts
 constexpr double kAxes = 0.36;          // of the picture's shorter side: axes in space
 constexpr double kAslant = 0.05;        // sine of an angle: nearer to each other two arrows are in line
+constexpr double kApart = 1.1;          // widths of an arrow: how far one on another's line moves aside
+constexpr double kHeads = 3;            // the same: so near to each other heads meet
 constexpr double kHaloInPrint = 1.6;    // points: from the middle of an arrow to the edge of its halo
 constexpr double kTail = 1.7;           // widths of an arrow: radius of the dot where it begins
 constexpr double kFull = 0.28;      // of an arrow's growth: from here on its words are as strong as others
@@ -95,8 +97,10 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   arrows[0].hang = hang_;
   arrows[0].bare = bare(arrows[0].tail, arrows[0].tip);
   // those of a film are drawn together: few batches
-  if (!film()) draw_arrows(arrows, arrow_, colours_.room, ink, list_);
-  arrows_.push_back(arrows[0]), inks_.push_back(ink);
+  // axes lie under plates, so that words are read over them
+  const bool at_once = !film() || key.kind == WordKey::axis;
+  if (at_once && !how_.survey) draw_arrows(arrows, arrow_, colours_.room, ink, list_);
+  if (key.kind != WordKey::axis) arrows_.push_back(arrows[0]), inks_.push_back(ink);
   const Point end = film() ? arrows[0].tip : tip;
   placing_.avoid(tail, end, film() ? kOnArrow : kOnArrowInPrint, true);
   // in print its halo, too: words that touch it look cut
@@ -125,31 +129,51 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   return true;
 }
 
+// How much arrow i lies on the line of arrow j and over it, 0 to 1, where it would also if either were longer
+// by so much.
+double Notes::on_one_line(std::size_t i, std::size_t j, double longer) const {
+  const Arrow &a = arrows_[i], &b = arrows_[j];
+  const Point along = a.tip - a.tail, other = b.tip - b.tail;
+  const double length = along.norm(), wide = kArrowLine * arrow_;
+  if (i == j || (a.tail - b.tail).norm() < wide) return 0;
+  const Point u = along / length, across(-u.y(), u.x());
+  const double from = (b.tail - a.tail).dot(u), to = (b.tip - a.tail).dot(u);
+  const double shared = std::min(std::max(from, to), length) - std::max(std::min(from, to), 0.0) + longer;
+  const double aslant = std::abs(other.normalized().dot(across)) / kAslant,
+               off = std::abs((b.tail - a.tail).dot(across)) / wide;
+  return std::min(std::clamp(2 - std::max(aslant, off), 0.0, 1.0),
+                  std::clamp(shared / (2 * wide) - 0.5, 0.0, 1.0));
+}
+
 // Arrows that lie over each other on one line read as one, with a head at either end: a dot shows where each
 // begins. It grows as they come into line, so that it does not flicker.
-void Notes::mark_tails() {
-  if (!view_.view()) return;
+std::vector<double> Notes::tails() const {
   std::vector<double> strength(arrows_.size(), 0);
-  for (std::size_t i = 0; i < arrows_.size(); ++i) {
-    for (std::size_t j = 0; j < arrows_.size(); ++j) {
-      const Arrow &a = arrows_[i], &b = arrows_[j];
-      const Point along = a.tip - a.tail, other = b.tip - b.tail;
-      const double length = along.norm(), wide = kArrowLine * arrow_;
-      if (i == j || (a.tail - b.tail).norm() < wide) continue;
-      const Point u = along / length, across(-u.y(), u.x());
-      const double from = (b.tail - a.tail).dot(u), to = (b.tip - a.tail).dot(u);
-      const double shared = std::min(std::max(from, to), length) - std::max(std::min(from, to), 0.0);
-      const double aslant = std::abs(other.normalized().dot(across)) / kAslant,
-                   off = std::abs((b.tail - a.tail).dot(across)) / wide;
-      const double here = std::min(std::clamp(2 - std::max(aslant, off), 0.0, 1.0),
-                                   std::clamp(shared / (2 * wide) - 0.5, 0.0, 1.0));
-      strength[i] = std::max(strength[i], here);
-    }
-  }
+  for (std::size_t i = 0; i < arrows_.size() && view_.view(); ++i)
+    for (std::size_t j = 0; j < arrows_.size(); ++j)
+      strength[i] = std::max(strength[i], on_one_line(i, j, 0));
+  return strength;
+}
+
+void Notes::mark_tails(const std::vector<double>& strength) {
   for (std::size_t i = 0; i < arrows_.size(); ++i) {
     const double radius = kTail * kArrowLine * arrow_ * strength[i];
     if (radius > 0.5 * kArrowLine * arrow_) list_.add(Disc{arrows_[i].tail, radius, 0, inks_[i], inks_[i]});
   }
+}
+
+// Two arrows on one line that meet head on, or lie over each other, are moved to either side of it.
+void Notes::set_apart() {
+  const double wide = kArrowLine * arrow_;
+  std::vector<Point> moved(arrows_.size(), Point(0, 0));
+  for (std::size_t i = 0; i < arrows_.size(); ++i)
+    for (std::size_t j = i + 1; j < arrows_.size(); ++j) {
+      const Point u = (arrows_[i].tip - arrows_[i].tail).normalized(), across(-u.y(), u.x());
+      const bool head_on = u.dot(arrows_[j].tip - arrows_[j].tail) < 0;
+      const double by = kApart * wide * on_one_line(i, j, head_on ? kHeads * wide : 0);
+      moved[i] -= by * across, moved[j] += by * across;
+    }
+  for (std::size_t i = 0; i < arrows_.size(); ++i) arrows_[i].tail += moved[i], arrows_[i].tip += moved[i];
 }
 
 void Notes::hang(const Vec3& a, const Vec3& b) {

@@ -34,9 +34,10 @@ constexpr double kArrowSeen = 0.2;   // page units: of less an arrow is none
 constexpr double kShared = 4000;     // points: of a second of lying on another label
 constexpr double kPassing =
     0.4;  // of the time that a label is shown: for less than that it lies on others in passing
-constexpr double kLedThrough = 120;  // points: of a leader through another label
-constexpr double kOver = 8;          // of each unit of its own arrow that it passes over
-constexpr double kTouches = 120;     // page units: of touching it on the way
+constexpr double kAroundWords = 1.2;  // of their size: which leaders keep off
+constexpr double kLedThrough = 120;   // points: of a leader through another label
+constexpr double kOver = 8;           // of each unit of its own arrow that it passes over
+constexpr double kTouches = 120;      // page units: of touching it on the way
 
 /// A label that is planned, where it stands at a sample.
 struct Planned {
@@ -71,7 +72,10 @@ double under(const Point& a, const Point& b, const Point& center, const Point& s
 // whether the line from words to what they name runs through other words
 bool leads_through(const Offered& a, const Placing::Candidate& at, const Offered& b,
                    const Placing::Candidate& other) {
-  return at.leader && under(a.anchor, at.center, other.center, b.size) > 0;
+  // of words behind an arrow it ends at the tail
+  const bool behind = a.arrow && (at.center - a.arrow->first).dot(a.arrow->second - a.arrow->first) < 0;
+  return at.leader &&
+         under(behind ? a.arrow->first : a.anchor, at.center, other.center, kAroundWords * b.size) > 0;
 }
 
 // how far it is from one place to another: a name goes around its body

@@ -389,9 +389,10 @@ void Notes::finish() {
       list_.hang(words_[i].hang);
       plate(whole(placed[i].at.center), size(set), set.color.a);
     }
-  if (film()) draw_arrows(arrows_, inks_, arrow_, colours_.room, list_);
+  const std::vector<double> tails = this->tails();
+  if (film()) set_apart(), draw_arrows(arrows_, inks_, arrow_, colours_.room, list_);
   list_.hang({});
-  mark_tails();
+  mark_tails(tails);
   for (const auto& [at, ink, hang] : dots_) {
     list_.hang(hang);
     list_.halo(true);

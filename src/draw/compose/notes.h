@@ -36,7 +36,10 @@ class Notes {
   void finish();
 
  private:
-  void mark_tails();
+  double on_one_line(std::size_t i, std::size_t j, double longer) const;
+  std::vector<double> tails() const;
+  void mark_tails(const std::vector<double>& strength);
+  void set_apart();
   AroundTail around(const Marks::Vector& vector, const Reading& reading) const;
   std::vector<Point> steady_arrows(int body, const Marks& marks) const;
   struct Word {
