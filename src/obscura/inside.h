@@ -39,7 +39,7 @@ class Work {
 };
 
 struct World::Inside {
-  explicit Inside(const Scene& of);
+  Inside(const Scene& of, int threads);
   Work work() const { return {going, "this World"}; }
 
   /// The instant at which it stands.

@@ -23,9 +23,15 @@ void copy(const sim::Vec3& from, double (&to)[3]) { std::copy_n(from.data(), 3, 
 
 }  // namespace
 
-World::Inside::Inside(const Scene& of) : scene(of) {
+World::Inside::Inside(const Scene& of, int threads) : scene(of) {
   const scene::Scene& its = of.inside().scene;
-  run = its.shown_run();
+  if (threads == 1) {
+    run = its.shown_run();
+  } else {
+    scene::Scene shared = its;
+    shared.share_steps(threads);
+    run = shared.shown_run();
+  }
   std::vector<int> trailed;
   for (std::size_t i = 0; i < its.look.bodies.size(); ++i) {
     if (its.look.bodies[i].trail > 0) trailed.push_back(int(i));
@@ -96,7 +102,8 @@ std::vector<Pair> World::Inside::touching() const {
   return all;
 }
 
-World::World(const Scene& scene) : inside_(guarded([&] { return std::make_unique<Inside>(scene); })) {}
+World::World(const Scene& scene, int threads)
+    : inside_(guarded([&] { return std::make_unique<Inside>(scene, threads); })) {}
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 World::~World() = default;

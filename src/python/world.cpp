@@ -117,7 +117,10 @@ void add_world(py::module_& module) {
           }));
 
   py::class_<World>(module, "World", py::dynamic_attr())
-      .def(py::init([](const Scene& scene) { return unlocked([&] { return World(scene); }); }))
+      .def(py::init([](const Scene& scene, int threads) {
+             return unlocked([&] { return World(scene, threads); });
+           }),
+           py::arg("scene"), py::arg("threads") = 1)
       .def_property_readonly("time", &World::time, "s")
       .def_property_readonly("steps", &World::steps, "Done since the start.")
       .def_property_readonly("step_length", &World::step_length, "s")

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <thread>
 
 #include "draw/compose/annotate.h"
 #include "scene/bodies.h"
@@ -32,6 +33,7 @@
 #include "sim/constraint/joints/joint.h"
 #include "sim/constraint/material.h"
 #include "sim/math/trig.h"
+#include "sim/math/workers.h"
 #include "sim/motion/stability.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/solve/exact/couples.h"
@@ -377,7 +379,20 @@ Scene Scene::again(const std::vector<std::string>& other, const RunMarks* with) 
       if (force.function) next.add_force<D>(force.name, *force.function);
   };
   if (next.dimension() == dimension()) std::visit(keep, world);
+  const auto workers = std::visit([](const auto& from) { return from.model.workers; }, world);
+  std::visit([&](auto& to) { to.model.workers = workers; }, next.world);
   return next;
+}
+
+void Scene::share_steps(int threads) {
+  constexpr int kBodiesEach = 50;  // fewer are not worth a thread
+  if (threads <= 0) threads = std::max(1, int(std::thread::hardware_concurrency()));
+  const auto share = [&](auto& it) {
+    const bool many = sim::solver(it.model) == sim::Solver::iterative;
+    const int useful = std::min(threads, many ? int(it.model.bodies.size()) / kBodiesEach : 1);
+    it.model.workers = useful > 1 ? std::make_shared<sim::Workers>(useful) : nullptr;
+  };
+  std::visit(share, world);
 }
 
 template <int D>

@@ -87,6 +87,10 @@ struct Scene {
   std::unique_ptr<sim::Run> shown_run(std::span<const std::uint64_t> saved = {}) const;
   std::vector<sim::Trouble> stability_warnings() const;
 
+  /// From now on, the steps of its runs are shared by so many threads, as far as there is enough to share; 0:
+  /// one a core. No bit hangs on it.
+  void share_steps(int threads);
+
   /// The same scene read again from its text with other overrides; forces of programs stay. Throws Error.
   Scene again(const std::vector<std::string>& sets, const RunMarks* marks = nullptr) const;
   /// Adds a force that a program computes. Requires D = dimension().

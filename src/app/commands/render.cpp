@@ -242,10 +242,13 @@ void divide(RenderFlags& flags, const Output& out) {
 }
 
 // estimates the resources first; prints them if the film takes longer than a minute
-void see_what_it_needs(const scene::Scene& scene, const Shots& shots, const Output& out, FilmOptions& film) {
+void see_what_it_needs(scene::Scene& scene, const Shots& shots, const Output& out, FilmOptions& film) {
   constexpr double kPatience = 0.03, kLong = 60;
   const Needs all = needs(scene, shots, out, kPatience);
   film.workers = fitting_workers(scene, all, film.workers);
+  // Threads share the steps where these, not the pictures, are what is waited for. What piles up takes longer
+  // than its first steps say.
+  if (2 * all.simulate * film.workers > all.simulate + all.draw) scene.share_steps(film.workers);
   const double seconds = all.seconds(film.workers);
   if (seconds < kLong || film.progress == ProgressKind::none) return;
   if (film.progress == ProgressKind::json) return;  // says what is left as it goes
@@ -399,7 +402,10 @@ OBSCURA_COMMAND(10, render) {
               "Start from the state in this file; --from must be at its time or later")
       .type("FILE");
   add_memory_limit(command);
-  command.option("-j,--jobs", flags->film.workers, "Workers that draw and encode in parallel [one per core]")
+  command
+      .option(
+          "-j,--jobs", flags->film.workers,
+          "Workers that draw and encode in parallel, and share the steps where these are slow [one per core]")
       .range(1, 256);
   add_backend(command, flags->film.context.backend);
   command.flag("--native", flags->film.context.native,

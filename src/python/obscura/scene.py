@@ -236,11 +236,12 @@ class World(_obscura.World):
     """A scene that runs, by whole steps of its physics clock.
 
     positions, velocities, turns and spins are columns of the state itself: arrays that cannot be written, follow the
-    world and keep it alive. Setting one takes hold from the next step on.
+    world and keep it alive. Setting one takes hold from the next step on. `threads` share the steps of some hundred
+    bodies or more (0: one a core); the bits are the same.
     """
 
-    def __init__(self, scene: Scene):
-        super().__init__(scene._built())
+    def __init__(self, scene: Scene, threads: int = 1):
+        super().__init__(scene._built(), threads)
         self.scene = scene
 
     def __reduce__(self):

@@ -17,6 +17,8 @@
 
 namespace obscura::sim {
 
+class Workers;
+
 enum class Integrator { rk4, midpoint, euler, semi_implicit };
 
 /// How contact is treated. `contact` and `event` keep bodies apart by forces, see sim/model/contact.h;
@@ -481,6 +483,8 @@ struct Model {
   std::vector<When<D>> whens;               // in the order of the file
   std::vector<Change<D>> changes;           // that they make
   bool changed = false;                     // whether events may change what this model is
+  // threads that share its steps; none: the caller's alone. No bit hangs on them
+  std::shared_ptr<Workers> workers = nullptr;
 
   /// Whether the books have a place for work: of forces and drag, of bodies that are moved, of motors.
   bool books_work() const {

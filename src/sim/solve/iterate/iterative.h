@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/math/workers.h"
 #include "sim/model/drives.h"
 #include "sim/model/script.h"
 #include "sim/motion/forward_dynamics.h"
@@ -107,6 +108,7 @@ class Iterative : public ContactSolver<D> {
 
   // For these.
 
+  Workers* workers() const { return model_.workers.get(); }
   bool moves(int body) const { return inverse_mass(moving_[std::size_t(body)]) > 0; }
   /// Whether this is the first substep of the run.
   static bool starts(StepPart<D> part) { return part.state.step == 0 && part.substep == 0; }

@@ -21,18 +21,13 @@ using plane::Pair;
 namespace {
 
 // iterations of a substep
-constexpr int kPlaneIterations = 40;    // of few pairs
-constexpr int kPairIterations = 2000;   // of more: pairs times iterations, but at least one iteration
-constexpr int kJointIterations = 16;    // with joints, which are solved exactly in each
-constexpr int kStrainIterations = 64;   // if joints press a body far into another
-constexpr double kStrained = 0.02;      // how far that is, of its half thickness
-constexpr int kSettlingPairs = 20000;   // more, of unsettled pairs: pairs times iterations, at least
-constexpr int kSettlingIterations = 8;  // or as many as so many iterations of all pairs
+constexpr int kPlaneIterations = 40;   // of few pairs
+constexpr int kPairIterations = 2000;  // of more: pairs times iterations, but at least one iteration
+constexpr int kJointIterations = 16;   // with joints, which are solved exactly in each
+constexpr int kStrainIterations = 64;  // if joints press a body far into another
+constexpr double kStrained = 0.02;     // how far that is, of its half thickness
 
 constexpr double kStruck = 2;  // times as fast as what strikes it: something light
-
-constexpr int kFewPairs = 300;      // accelerated
-constexpr int kFewIterations = 50;  // more, of few pairs that others do not touch
 
 // iterations of push_out()
 constexpr int kProjections = 5;  // for each of a substep
@@ -210,8 +205,7 @@ void PlaneIterative::warm_start(StepPart<D> part) {
   constants_ = {part.h, 0.05 * restitution_threshold_,
                 part.h * std::sqrt(model_.gravity.squaredNorm()) + driven_gain_, allowed_overlap(part.state)};
   if (part.substep == 0) warm_start_.begin(moving_);
-  deep_ = plane::warm_start(batches_.data(), int(batches_.size()), poses_.data(), old_.data(), moving_.data(),
-                            constants_, slow_, fast_);
+  apply_warm_start();
   if (part.substep == 0) moderate_warm_start();
 }
 
@@ -261,16 +255,13 @@ int PlaneIterative::iterations(StepPart<D> part) const {
   return std::clamp(most / 4 * few, 4, most) - 1;
 }
 
-void PlaneIterative::iterate_contacts(int) {
-  plane::iterate(batches_.data(), int(batches_.size()), poses_.data(), moving_.data(), constants_);
-}
+void PlaneIterative::iterate_contacts(int) { iterate_all(); }
 
 // one more; forces stay in the lanes until the last substep
 void PlaneIterative::finish_iterations(StepPart<D> part) {
   const bool last = part.substep + 1 == substeps_;
   solve_joint_velocities();
-  plane::iterate_last(batches_.data(), int(batches_.size()), poses_.data(), moving_.data(), constants_,
-                      last ? part.state.contacts.data() : nullptr);
+  iterate_last(last ? part.state.contacts.data() : nullptr);
   impacts_.record(pairs_.all(), part.state.contacts, batches_);
 }
 
@@ -284,113 +275,6 @@ void PlaneIterative::list_touching(StepPart<D>, std::vector<std::pair<int, int>>
       bears = bears || (g.struck[k] >> lane & 1) || g.p[k][lane] != 0 || g.q[k][lane] != 0;
     if (bears) pairs.emplace_back(pair.a, pair.b);
   }
-}
-
-// More iterations of pairs that have not settled and of their neighbours: if a column is struck from below,
-// the impact must pass through all of it in this substep. Those of few are accelerated by conjugate
-// directions (Silcowitz, Niebe and Erleben 2010).
-void PlaneIterative::settle_contacts() {
-  settle_all();
-  settle_few();
-}
-
-void PlaneIterative::settle_all() {
-  const int count = int(batches_.size());
-  const bool follows = awake_pairs_ <= kFewPairs;
-  active_bodies_.settled = settled_rate(closing_rates_.most), active_bodies_.groups.clear();
-  const auto activate = [&] {
-    active_bodies_.bodies.assign(turns_.size() + 1, plane::ActiveBodies::kNow);
-    active_bodies_.bodies.back() = 0;
-    for (const int body : joints_.bodies()) active_bodies_.bodies[body] = plane::ActiveBodies::kNever;
-  };
-  activate();
-  if (follows) {
-    before_.resize(std::size_t(count)), directions_.assign(std::size_t(count), {});
-    for (int i = 0; i < count; ++i) {
-      for (int k = 0; k < 2; ++k)
-        std::copy_n(batches_[i].p[k], kLanes, before_[i].p[k]),
-            std::copy_n(batches_[i].q[k], kLanes, before_[i].q[k]);
-    }
-  }
-  double change = 0;
-  int left = std::max(kSettlingPairs, kSettlingIterations * awake_pairs_);
-  for (int pairs = 1; left > 0; left -= pairs) {
-    pairs = plane::iterate(batches_.data(), count, poses_.data(), moving_.data(), constants_, active_bodies_);
-    if (pairs == 0) return;
-    const auto now = [](unsigned char flags) { return flags & plane::ActiveBodies::kNow; };
-    if (!follows || left <= pairs) continue;
-    if (std::none_of(active_bodies_.bodies.begin(), active_bodies_.bodies.end(), now)) return;
-    const double changed = squared_change();
-    plane::follow(batches_.data(), count, poses_.data(), moving_.data(), before_.data(), directions_.data(),
-                  change > 0 && changed <= change ? changed / change : 0, active_bodies_);
-    change = changed;
-    activate();
-  }
-}
-
-// Of islands of few pairs those that are not at rest go on to a bound that does not hang on what moves
-// elsewhere, or how fast: something heavy that falls on something light is not to bounce, nor to be held the
-// worse where something fast is near. What iterations leave is solved exactly.
-void PlaneIterative::settle_few() {
-  if (few_stale_) find_few();
-  if (active_bodies_.settled <= kSettled || few_groups_.empty()) return;
-  active_bodies_.settled = kSettled, active_bodies_.groups = few_groups_, active_bodies_.listed = few_bodies_;
-  std::fill(active_bodies_.bodies.begin(), active_bodies_.bodies.end(), 0);
-  for (const int body : few_bodies_) active_bodies_.bodies[body] = plane::ActiveBodies::kNow;
-  for (int i = 0; i < kFewIterations; ++i) {
-    if (plane::iterate(batches_.data(), int(batches_.size()), poses_.data(), moving_.data(), constants_,
-                       active_bodies_) == 0)
-      return;
-  }
-}
-
-// islands of so few pairs that they may be solved exactly: their bodies, and the groups with lanes of theirs
-void PlaneIterative::find_few() {
-  const int n = int(turns_.size());
-  const auto moves = [&](int body) { return moving_[body].im > 0; };
-  Islands& sets = exhausted_.sets;
-  std::vector<int>& pairs = exhausted_.contacts;
-  sets.reset(n + 1), pairs.assign(n + 1, 0);
-  const auto each_pair = [&](auto&& act) {
-    for (const Pair& pair : pairs_.all()) {
-      if (pair.slot >= 0) act(pair, pair.b >= 0 ? pair.b : n);
-    }
-  };
-  each_pair([&](const Pair& pair, int b) {
-    if (moves(pair.a) && moves(b)) sets.join(pair.a, b);
-  });
-  for (const int body : joints_.bodies()) pairs[sets.root(body)] = kFewSolved + 1;
-  each_pair([&](const Pair& pair, int b) { ++pairs[sets.root(moves(pair.a) ? pair.a : b)]; });
-  few_bodies_.clear(), few_groups_.clear();
-  for (int i = 0; i < n; ++i) {
-    if (const int count = pairs[sets.root(i)]; moves(i) && count > 0 && count <= kFewSolved)
-      few_bodies_.push_back(i);
-  }
-  each_pair([&](const Pair& pair, int b) {
-    if (pairs[sets.root(moves(pair.a) ? pair.a : b)] <= kFewSolved) few_groups_.push_back(pair.slot / kLanes);
-  });
-  std::sort(few_groups_.begin(), few_groups_.end());
-  few_groups_.erase(std::unique(few_groups_.begin(), few_groups_.end()), few_groups_.end());
-  few_stale_ = false;
-}
-
-// what the last iteration has changed of the impulses, each by the masses that it moves; in the order of
-// pairs
-double PlaneIterative::squared_change() const {
-  double sum = 0;
-  for (const Pair& pair : pairs_.all()) {
-    if (pair.slot < 0) continue;
-    const ContactBatch& g = batches_[pair.slot / kLanes];
-    const plane::LaneImpulses& before = before_[pair.slot / kLanes];
-    const int lane = pair.slot % kLanes;
-    double its = 0;
-    for (int k = 0; k < 2; ++k) {
-      const double p = g.p[k][lane] - before.p[k][lane], q = g.q[k][lane] - before.q[k][lane];
-      its += p * p + q * q;
-    }
-    sum += (moving_[g.a[lane]].im + moving_[g.b[lane]].im) * its;
-  }
-  return sum;
 }
 
 void PlaneIterative::finish_substep(StepPart<D> part) { outran_ = outran(part.h, (1 - share(part)) * span_); }
@@ -634,8 +518,7 @@ void PlaneIterative::push_out(const State<D>& state) {
     if (!joints_.empty()) joints_.solve_positions();
     for (const int k : joints_.bodies())
       set_velocity(push_[k], joints_.body_motion(k).v, joints_.body_motion(k).w);
-    plane::project(batches_.data(), projections_.data(), int(batches_.size()), poses_.data(), push_.data(),
-                   corrected_share(state, span_), allowed_overlap(state));
+    project_all(corrected_share(state, span_), allowed_overlap(state));
   }
   begin_corrections();
   for (std::size_t i = 0; i < corrections_.size(); ++i) corrections_[i] = {push_[i].x, push_[i].y};

@@ -83,6 +83,14 @@ class PlaneIterative final : public Iterative<2> {
   void fill_lane(int pair, const State<D>& state);
   void write_lane(const plane::Pair& pair, const State<D>& state);
   void first_guess(State<D>& state);
+  template <class Act>
+  void by_colour(const Act& act);
+  plane::StepConstants constants_from(int batch) const;
+  void apply_warm_start();
+  void iterate_all();
+  int iterate_active();
+  void iterate_last(Contact<D>* contacts);
+  void project_all(double share, AllowedOverlap allowed);
   int fewest_iterations() const;
   void settle_all();
   void settle_few();
@@ -141,6 +149,12 @@ class PlaneIterative final : public Iterative<2> {
   std::vector<plane::ContactBatch> batches_;
   std::vector<plane::Projection> projections_;
   plane::LaneList slow_, fast_;
+  // what a piece of apply_warm_start() has found
+  struct Seen {
+    bool deep = false;
+    plane::LaneList slow, fast;
+  };
+  std::vector<Seen> seen_;
   // of an island at rest: its pairs, by lane, and batches of its own
   std::vector<int> rest_;
   std::vector<plane::ContactBatch> rest_batches_;

@@ -570,8 +570,10 @@ void iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConsta
 }
 int iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
             ActiveBodies& active) {
-  const int pairs = four_lanes ? iterate_some_wide(s, n, at, v, pace, active)
-                               : iterate_all<V2, false, false, true>(s, n, at, v, pace, nullptr, &active);
+  return four_lanes ? iterate_some_wide(s, n, at, v, pace, active)
+                    : iterate_all<V2, false, false, true>(s, n, at, v, pace, nullptr, &active);
+}
+void activate_next(ActiveBodies& active) {
   // walls are never active
   active.bodies.back() = 0;
   const auto next = [](unsigned char& body) {
@@ -583,7 +585,6 @@ int iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstan
   } else {
     for (const int body : active.listed) next(active.bodies[std::size_t(body)]);
   }
-  return pairs;
 }
 void follow(ContactBatch* s, int n, const Pose* at, Motion* v, LaneImpulses* before, LaneImpulses* directions,
             double share, const ActiveBodies& active) {

@@ -129,9 +129,12 @@ struct ActiveBodies {
   std::vector<int> groups, listed;
 };
 
-/// One iteration of the pairs of such bodies alone. Sets the flags for the next; returns the number of pairs.
+/// One iteration of the pairs of such bodies alone. Notes what the next is to look at; returns the number of
+/// pairs.
 int iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
             ActiveBodies& active);
+/// After one over all: the bodies that it has noted are active.
+void activate_next(ActiveBodies& active);
 /// Impulses of four pairs, as ContactBatch has them.
 struct alignas(64) LaneImpulses {
   double p[2][kLanes], q[2][kLanes];

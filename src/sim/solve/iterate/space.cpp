@@ -13,6 +13,7 @@
 #include <limits>
 
 #include "sim/math/exponential.h"
+#include "sim/solve/iterate/pieces.h"
 #include "sim/solve/iterate/substeps.h"
 
 namespace obscura::sim {
@@ -23,9 +24,6 @@ constexpr double kDeepest = 2e-3;        // of a body's bounding radius: deeper 
 constexpr int kMostIterations = 40;      // of few touches
 constexpr int kFewestIterations = 4;     // of many
 constexpr int kTouchIterations = 20000;  // touches times iterations between
-constexpr int kPartRounds = 2000;        // gaps times rounds of pushing apart; 4 to 16 rounds at least,
-constexpr int kMostParts = 10000;        // and so many, until changes are
-constexpr double kParted = 1e-12;        // of what is wanted
 constexpr int kTempering = 5;            // rounds
 constexpr double kRoundingGain = 1e-9;   // of its kinetic energy: what an island may win by rounding
 
@@ -156,16 +154,18 @@ void SpaceIterative::report(StepPart<D> step) { add_impulses(step.state); }
 void SpaceIterative::prepare(const State<D>& state, double t, double h) {
   const int n = int(model_.bodies.size());
   stances_.resize(n), moving_.assign(n + 1, {}), inactive_.resize(n), turned_.resize(n);
-  for (int i = 0; i < n; ++i) {
-    const Body<D>& body = model_.bodies[i];
-    const Rotation<D> before = stances_[i].room_from_body;
-    stances_[i] = body_motion(state, i);
-    // no matter has moved farther than this, of its distance from the centre
-    turned_[i] += std::sqrt(0.5 * (stances_[i].room_from_body - before).squaredNorm());
-    inactive_[i] = body.fixed || state.frozen[i];
-    response_.set(i, !inactive_[i]);
-    if (!inactive_[i]) moving_[i] = PointBody<D>(body, stances_[i]);
-  }
+  each(workers(), n, kBodyPiece, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const Body<D>& body = model_.bodies[i];
+      const Rotation<D> before = stances_[i].room_from_body;
+      stances_[i] = body_motion(state, i);
+      // no matter has moved farther than this, of its distance from the centre
+      turned_[i] += std::sqrt(0.5 * (stances_[i].room_from_body - before).squaredNorm());
+      inactive_[i] = body.fixed || state.frozen[i];
+      response_.set(i, !inactive_[i]);
+      if (!inactive_[i]) moving_[i] = PointBody<D>(body, stances_[i]);
+    }
+  });
   std::fill(farther_.begin(), farther_.end(), 0);
   for (int i = 0; i < drives_.size(); ++i) {
     const int body = drives_.body(i);
@@ -259,29 +259,46 @@ double SpaceIterative::integrate_step(StepPart<D> part) {
 void SpaceIterative::share_free_motion(State<D>& state, double h) {
   const double part = 1 / double(substeps_);
   const std::size_t still = state.v.size() - state.spin.size();
-  for (std::size_t i = 0; i < state.v.size(); ++i) {
-    if (inactive_[i]) continue;
+  const auto share = [&](std::size_t i) {
+    if (inactive_[i]) return;
     const Vec<D> gain = part * gains_[i];
     state.x[i] += h * (state.v[i] + 0.5 * gain) + part * bends_[i];
     state.v[i] += gain;
-    if (i < still) continue;
+    if (i < still) return;
     const std::size_t k = i - still;
     const AngularVec<D> more = part * spin_gains_[k];
     state.turn[k] =
         turned<D>(state.turn[k], AngularVec<D>(h * (state.spin[k] + 0.5 * more) + part * turn_bends_[k]));
     state.spin[k] += more;
-  }
+  };
+  each(workers(), int(state.v.size()), kBodyPiece, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) share(std::size_t(i));
+  });
 }
 
 // what each touch wants of the step, and the forces it had in the last
 void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
+  const int count = int(touches_.size());
+  known_force_.resize(touches_.size());
+  each(workers(), count, kTouchPiece, [&](int begin, int end) { set_aims(begin, end, state, h); });
+  closing_.assign(model_.bodies.size() + 1, 0), all_.clear();
+  for (int i = 0; i < count; ++i) {
+    const ContactConstraint& touch = touches_[i];
+    all_.push_back(i);
+    if (touch.closing) closing_[touch.a] = closing_[touch.b] = 1;
+    if (known_force_[i]) push(touch, touch.normal_impulse * touch.n + touch.tangent_impulse);
+  }
+}
+
+// of touches from `begin` on before `end`
+void SpaceIterative::set_aims(int begin, int end, const State<D>& state, double h) {
   static const BodyMotion<D> room;
   const int n = int(model_.bodies.size());
-  closing_.assign(n + 1, 0), all_.clear();
-  auto known = state.contacts.begin();
-  for (int i = 0; i < int(touches_.size()); ++i) {
+  auto known = std::lower_bound(state.contacts.begin(), state.contacts.end(), touches_[begin].key,
+                                [](const auto& contact, const ContactKey& key) { return contact.key < key; });
+  for (int i = begin; i < end; ++i) {
     ContactConstraint& touch = touches_[i];
-    all_.push_back(i);
+    known_force_[i] = 0;
     if (drives_.number(touch.a) >= 0 || (touch.b < n && drives_.number(touch.b) >= 0))
       touch.drift = drift(i, state, h);
     const BodyMotion<D>& b = touch.b == n ? room : stances_[touch.b];
@@ -299,7 +316,6 @@ void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
       touch.least = std::min(-touch.gap / h, 0.0);
       touch.closing = before < -0.05 * restitution_threshold_ && touch.gap + h * before < 0;
     }
-    if (touch.closing) closing_[touch.a] = closing_[touch.b] = 1;
     while (known != state.contacts.end() && known->key < touch.key) ++known;
     if (known == state.contacts.end() || known->key != touch.key) continue;
     touch.normal_impulse = std::max(0.0, h * known->force.dot(touch.n));
@@ -307,7 +323,7 @@ void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
     const double size = std::sqrt(touch.tangent_impulse.squaredNorm()),
                  most = touch.mu * touch.normal_impulse;
     if (size > most) touch.tangent_impulse *= most / size;
-    push(touch, touch.normal_impulse * touch.n + touch.tangent_impulse);
+    known_force_[i] = 1;
   }
 }
 
@@ -412,8 +428,8 @@ void SpaceIterative::find_strikes(double h) {
 void SpaceIterative::place(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   find_strikes(h);
-  for (int i = 0; i < n; ++i) {
-    if (inactive_[i]) continue;
+  const auto place_one = [&](int i) {
+    if (inactive_[i]) return;
     const PointBody<D>& m = moving_[i];
     const bool closing = closing_[i] && when_[i] < 0;
     // how long it moves with what the iterations changed: all of the step in the mean, or since its impact
@@ -425,10 +441,10 @@ void SpaceIterative::place(State<D>& state, double h) {
     }
     state.v[i] = m.v;
     const int k = turning(state, i);
-    if (k < 0) continue;
+    if (k < 0) return;
     state.turn[k] = turn_free_[k], state.spin[k] = w_free_[k];
     const AngularVec<D> change = m.w - w_free_[k];
-    if (change.isZero(0)) continue;
+    if (change.isZero(0)) return;
     // pushes were reckoned with the body as it stood when the step began; it turns on, and its angular
     // momentum stays
     const AngularVec<D>& inertia = model_.bodies[i].inertia;
@@ -438,7 +454,10 @@ void SpaceIterative::place(State<D>& state, double h) {
     const Rotation<D> now = rotation<D>(state.turn[k]);
     state.spin[k] = carried_spin<D>(inertia, fallen, now, w_free_[k]) +
                     carried_spin<D>(inertia, stances_[i].room_from_body, now, change);
-  }
+  };
+  each(workers(), n, kBodyPiece, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) place_one(i);
+  });
 }
 
 // place() has, but for what their spins become by turning on
@@ -449,71 +468,16 @@ void SpaceIterative::place_bodies(StepPart<D> part) {
   }
 }
 
-// J M^-1 J' of a contact's normal, 1/kg
-double SpaceIterative::normal_response(const ContactConstraint& touch) const {
-  double sum = 0;
-  for (const auto& [body, arm] : {std::pair(touch.a, &touch.arm_a), std::pair(touch.b, &touch.arm_b)}) {
-    const PointBody<D>& m = moving_[body];
-    const AngularVec<D> turns = moment<D>(*arm, touch.n);
-    sum += m.inverse_mass + turns.dot(m.inverse_inertia * turns);
-  }
-  return sum;
-}
-
-// positions out of each other, a part of the way, by the same rows
-void SpaceIterative::correct_overlaps(StepPart<D> part) {
-  State<D>& state = part.state;
-  const int n = int(model_.bodies.size());
-  const AllowedOverlap let = allowed_overlap(state);
-  const auto allowed = [&](const ContactConstraint& touch) {
-    const double far = bounding_radius_[touch.a];
-    return let(touch.b == n ? far : std::max(far, bounding_radius_[touch.b]), 1 / touch.per_width);
-  };
-  const double share = corrected_share(state, part.h);
-  some_.clear();
-  for (int i = 0; i < int(touches_.size()); ++i) {
-    const ContactConstraint& touch = touches_[i];
-    if (touch.gap < -allowed(touch)) some_.push_back(i);
-  }
-  if (some_.empty()) return;
-  begin_corrections();
-  kept_ = moving_, parted_.assign(some_.size(), 0), responses_.clear();
-  for (const int i : some_) responses_.push_back(normal_response(touches_[i]));
-  for (PointBody<D>& m : moving_) m.v.setZero(), m.w.setZero();  // and belts do not push
-  const int fewest = std::clamp(kPartRounds / int(some_.size()), 4, 16),
-            rounds = std::max(fewest, kMostParts / int(some_.size()));
-  // few until nothing changes: then the order in which they are visited does not matter
-  double most = 0, change = 1;
-  for (int round = 0; round < rounds && (round < fewest || change > kParted * most); ++round) {
-    change = 0;
-    for (int k = 0; k < int(some_.size()); ++k) {
-      const ContactConstraint& touch = touches_[some_[k]];
-      const double wanted = share * (-touch.gap - allowed(touch));
-      // what another has pushed apart too is taken back
-      const double left = std::max(wanted - touch.n.dot(slip(touch)), -responses_[k] * parted_[k]);
-      parted_[k] += left / responses_[k];
-      push(touch, left / responses_[k] * touch.n);
-      most = std::max(most, wanted), change = std::max(change, std::fabs(left));
-    }
-    if (joints_.empty()) continue;
-    velocities_to_joints();
-    joints_.solve_positions();
-    velocities_from_joints();
-  }
-  for (int i = 0; i < int(model_.bodies.size()); ++i) {
-    if (inactive_[i]) continue;
-    state.x[i] += moving_[i].v, corrections_[i] += moving_[i].v;
-    if (const int k = turning(state, i); k >= 0) state.turn[k] = turned<D>(state.turn[k], moving_[i].w);
-  }
-  moving_.swap(kept_);
-}
-
 // the forces of this substep; what sleeps keeps its own
 void SpaceIterative::report_contacts(State<D>& state, double h) const {
   const auto asleep = [&](int body) { return body < 0 || inactive_[body]; };
   std::erase_if(state.contacts, [&](const Contact<D>& c) { return !asleep(c.key.a) || !asleep(c.key.b); });
   const std::size_t kept = state.contacts.size();
-  for (const ContactConstraint& touch : touches_) state.contacts.push_back(contact(touch, h));
+  state.contacts.resize(kept + touches_.size());
+  each(workers(), int(touches_.size()), kTouchPiece, [&](int begin, int end) {
+    for (auto i = std::size_t(begin); i < std::size_t(end); ++i)
+      state.contacts[kept + i] = contact(touches_[i], h);
+  });
   std::inplace_merge(state.contacts.begin(), state.contacts.begin() + std::ptrdiff_t(kept),
                      state.contacts.end(), [](const auto& p, const auto& q) { return p.key < q.key; });
 }

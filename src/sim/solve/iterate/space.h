@@ -72,6 +72,8 @@ class SpaceIterative final : public Iterative<3> {
     double asked[2] = {-1, -1};  // s
     int last = 0;
     bool ends = false;
+
+    void forget() { asked[0] = asked[1] = -1, last = 0, ends = false; }
   };
   // a gap then; the bodies until they are asked for at two other times
   struct Instant {
@@ -98,19 +100,55 @@ class SpaceIterative final : public Iterative<3> {
     double turned = 0;                // rad, of both
   };
 
+  // what features are looked for by
+  struct Search {
+    double h = 0;             // s
+    std::int64_t number = 0;  // of the substep, since all were looked for
+    bool same = false;        // those of the step's start are known
+    std::span<const Contact<D>> contacts;
+  };
+  // the touches of a pair that may come to lie in each other; see may_turn_into()
+  struct TurningPair {
+    int first, end;
+    bool may = false;
+    double least = 0;
+  };
+  // of those that are pushed apart
+  struct OverlappingTouch {
+    int touch;
+    double wanted;        // m
+    double response = 0;  // 1/kg
+    double parted = 0;    // kg m: of unit time
+  };
+  // those of a pair, and the most that a round has changed, m
+  struct OverlapPair {
+    int level, first, end;
+    double change = 0;
+  };
+  // the features of some bodies
+  struct Found {
+    std::vector<ContactCandidate<D>> all, of_pair;
+    int first = 0;  // their place among all
+  };
+
   void prepare(const State<D>& state, double t, double h);
   bool too_fast() const;
   void find(StepPart<D> step);
+  void find_of(int begin, int end, const Search& search, Found& found);
+  void begin_constraints();
   void find_near();
   bool stays_apart(const Apart& apart, int a, int b, double margin) const;
-  void take_known(int a, int b, double margin, std::size_t& memo);
-  bool keep_features(int a, int b, std::int64_t number, double h, std::span<const Contact<D>>& old,
-                     std::size_t& memo);
-  void add(const ContactCandidate<D>& gap, const Material& pair);
-  const Flown& flown(int body, double t, double h) const;
+  void take_known(int a, int b, double margin, std::size_t& memo,
+                  std::vector<ContactCandidate<D>>& gaps) const;
+  bool keep_features(int a, int b, const Search& search, std::span<const Contact<D>>& old, std::size_t& memo,
+                     std::vector<ContactCandidate<D>>& gaps) const;
+  ContactConstraint constraint(const ContactCandidate<D>& gap, const Material& pair) const;
+  const Flown& flown(int body, double t, double h, Flown* own = nullptr) const;
   Flown fly(int body, double t, double h) const;
-  Instant instant(int touch, double t, double h) const;
+  Instant instant(int touch, double t, double h, Flown* own = nullptr) const;
   double closing_time(int touch, double h);
+  double meeting_time(int touch, double h, Flown* own = nullptr) const;
+  bool may_turn_into(int first, int end, double h, Flown* own, double& least) const;
   double most_passing(const ContactConstraint& touch) const;
   void limit_speed(int body, double h);
   double approach_limit(int touch, double h) const;
@@ -122,10 +160,16 @@ class SpaceIterative final : public Iterative<3> {
   double margin(int body, double h) const;
   double passing_speed(int a, int b) const;
   double pair_margin(int a, int b, double h) const;
-  double find_features(int a, int b, double t, double h);
+  double find_features(int a, int b, double t, double h, std::vector<ContactCandidate<D>>& gaps,
+                       Flown* own = nullptr) const;
+  bool meets_by_nearest(int touch, double when, double h, std::vector<ContactCandidate<D>>& gaps,
+                        Flown* own) const;
   bool features_change(const ContactConstraint& touch) const;
   void renew_features(int first, double low, double high, double h);
+  void begin_flights(const State<D>& state, double h);
+  void find_closing(double h);
   void find_turned_pairs(double h);
+  void restore_features();
   bool has_nearest_features(const ImpactQueue::Due& due, double h);
   bool gather_impact(int touch, double t, double h);
   void begin_rows(int contacts);
@@ -143,6 +187,7 @@ class SpaceIterative final : public Iterative<3> {
   bool gains(const State<D>& state);
   void place(State<D>& state, double h);
   void warm_start_contacts(const State<D>& state, double h);
+  void set_aims(int begin, int end, const State<D>& state, double h);
   void moderate_warm_start();
   void solve_together();
   void shed_gains();
@@ -172,6 +217,9 @@ class SpaceIterative final : public Iterative<3> {
                const BodyMotion<D>& b, int body_b, const Vec<D>& arm_b) const;
   void find_strikes(double h);
   double normal_response(const ContactConstraint& touch) const;
+  double find_overlaps(const State<D>& state, double h);
+  void sort_overlaps();
+  void push_apart(OverlapPair& pair);
   void report_contacts(State<D>& state, double h) const;
   Contact<D> contact(const ContactConstraint& touch, double h) const;
 
@@ -198,13 +246,14 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<char> inactive_, inactive_then_, points_;
   std::vector<ContactCandidate<D>> gaps_;
   std::vector<ContactConstraint> touches_;  // ascending by key
-  SpaceBatches batches_;                    // of them, those that are iterated
+  SpaceBatches batches_{workers()};         // of them, those that are iterated
   Settling settling_;
-  std::vector<std::pair<int, int>> exhausted_;     // islands and their touches
-  std::vector<ContactCandidate<D>> features_;      // theirs
-  std::vector<ContactCandidate<D>> known_;         // and before: of a key always the same
-  double found_for_ = 0;                           // s: of what time within the step
-  std::vector<ContactCandidate<D>> row_features_;  // while impacts are resolved: those of the rows
+  std::vector<std::pair<int, int>> exhausted_;  // islands and their touches
+  std::vector<Found> found_;
+  std::vector<ContactCandidate<D>> features_;                 // theirs
+  std::vector<ContactCandidate<D>> known_;                    // and before: of a key always the same
+  double found_for_ = 0;                                      // s: of what time within the step
+  std::vector<std::pair<int, ContactCandidate<D>>> renewed_;  // touches, and what they had before
   std::vector<int> all_, some_;
   std::vector<Vec<D>> x_, x_free_, v_free_, gains_, bends_;
   std::vector<AngularVec<D>> spin_gains_, turn_bends_;
@@ -213,8 +262,10 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<char> closing_;
   std::vector<int> components_;  // of joints: those with bodies that closing_ names
   Islands islands_;
-  std::vector<double> responses_;                   // of the touches that are pushed apart, 1/kg
-  std::vector<double> parted_;                      // impulses that push touches apart, of unit time, kg m
+  std::vector<OverlappingTouch> overlaps_;
+  std::vector<OverlapPair> overlap_pairs_, sorted_overlaps_;
+  std::vector<int> overlap_levels_, overlap_begins_;
+  std::vector<char> known_force_;                   // of each touch: whether the state has a force for it
   std::vector<double> before_, gained_, returned_;  // of each island's impacts, J
   std::vector<double> given_;                       // by the contacts of each island, J
   bool struck_ = false;                             // whether any body had an impact in this step
@@ -224,6 +275,12 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<Fastest> fastest_;
   std::vector<AngularVec<D>> twist_;  // bodies: what the step adds to angular momentum without contacts
   std::vector<Reach> reach_;          // of each touch
+  std::vector<char> may_close_;       // of each touch: no limit says that it does not,
+  std::vector<double> meets_at_;      // when it does, s,
+  std::vector<char> nearest_;         // and whether by the features that are nearest then
+  std::vector<std::vector<ContactCandidate<D>>> nearest_gaps_;  // of some touches: scratch
+  std::vector<char> ends_;                                      // bodies: asked for where the step ends
+  std::vector<TurningPair> turning_;
   ImpactQueue due_;                   // numbers of touches
   std::vector<double> strikes_;       // bodies: s, when what the iterations change begins to move them
   std::vector<int> rounds_;           // impacts of each body

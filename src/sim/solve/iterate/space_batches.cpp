@@ -14,6 +14,7 @@
 #include <bit>
 
 #include "sim/math/lanes.h"
+#include "sim/solve/iterate/pieces.h"
 
 namespace obscura::sim {
 
@@ -102,7 +103,7 @@ OBSCURA_INLINE void add_turning(const WideBody<V>& body, const Wide3<V>& r, Symm
 //   askew = K n - n (n . K n)        of the block across n:  trace = tr K - n . K n,  determinant = n .
 //   adj(K) n
 template <class V>
-OBSCURA_INLINE void respond_all(const std::vector<SpaceBatches::Batch>& batches,
+OBSCURA_INLINE void respond_all(std::span<const SpaceBatches::Batch> batches,
                                 std::vector<SpaceBatches::Row>& rows, const double* bodies) {
   const V none{}, one = V{} + 1.0;
   for (const SpaceBatches::Batch& g : batches) {
@@ -136,20 +137,20 @@ OBSCURA_INLINE void respond_all(const std::vector<SpaceBatches::Batch>& batches,
   }
 }
 
-// kSome: of active bodies alone, of the batches `open`
+// those from `begin` on before `end`; walls and what does not move are written as they were
+// kSome: of active bodies alone, of the batches `open`; each says which of its lanes were on and have changed
 template <class V, bool kSome>
 OBSCURA_INLINE void iterate_all(std::vector<SpaceBatches::Batch>& batches,
                                 std::vector<SpaceBatches::Row>& rows,
-                                const std::vector<SpaceBatches::Belt>& belts, double* bodies, bool back,
-                                [[maybe_unused]] const std::vector<int>& open,
-                                [[maybe_unused]] Settling* settling) {
+                                const std::vector<SpaceBatches::Belt>& belts, double* bodies, int begin,
+                                int end, bool back, [[maybe_unused]] const std::vector<int>& open,
+                                [[maybe_unused]] const Settling* settling) {
   using Batch = SpaceBatches::Batch;
   using Row = SpaceBatches::Row;
   const V none{}, one = V{} + 1.0;
-  const int count = kSome ? int(open.size()) : int(batches.size());
-  for (int i = 0; i < count; ++i) {
-    const int at = back ? count - 1 - i : i;
-    const Batch& g = batches[std::size_t(kSome ? open[std::size_t(at)] : at)];
+  for (int i = begin; i < end; ++i) {
+    const int at = back ? begin + end - 1 - i : i;
+    Batch& g = batches[std::size_t(kSome ? open[std::size_t(at)] : at)];
     [[maybe_unused]] unsigned char on = 0;
     [[maybe_unused]] alignas(32) double friction[SpaceBatches::kLanes] = {};
     if constexpr (kSome) {
@@ -159,6 +160,7 @@ OBSCURA_INLINE void iterate_all(std::vector<SpaceBatches::Batch>& batches,
         on = static_cast<unsigned char>(on | 1 << lane);
         friction[lane] = settling->islands[std::size_t(g.island[lane])].friction ? 1 : 0;
       }
+      g.on = on, g.changed = 0;
       if (!on) continue;
     }
     for (int lane = 0; lane < SpaceBatches::kLanes; lane += Of<V>::lanes) {
@@ -211,12 +213,9 @@ OBSCURA_INLINE void iterate_all(std::vector<SpaceBatches::Batch>& batches,
         most_wrong *= load<V>(g.per_width + lane);
         for (int k = 0; k < Of<V>::lanes; ++k) {
           if (!(on >> (lane + k) & 1)) continue;
-          Settling::Island& island = settling->islands[std::size_t(g.island[lane + k])];
-          island.spent += g.count;
-          if (!(most_wrong[k] > island.settled)) continue;
-          island.changed = true;
-          settling->flags[std::size_t(g.a[lane + k])] |= Settling::kNext,
-              settling->flags[std::size_t(g.b[lane + k])] |= Settling::kNext;
+          const Settling::Island& island = settling->islands[std::size_t(g.island[lane + k])];
+          if (most_wrong[k] > island.settled)
+            g.changed = static_cast<unsigned char>(g.changed | 1 << (lane + k));
         }
       }
       a.back(bodies, g.at_a + lane), b.back(bodies, g.at_b + lane);
@@ -290,20 +289,22 @@ OBSCURA_WIDE void follow_wide(const std::vector<SpaceBatches::Batch>& batches,
                               const std::vector<int>& open, const Settling& settling) {
   follow_all<V4>(batches, rows, before, directions, bodies, open, settling);
 }
-OBSCURA_WIDE void respond_wide(const std::vector<SpaceBatches::Batch>& batches,
+OBSCURA_WIDE void respond_wide(std::span<const SpaceBatches::Batch> batches,
                                std::vector<SpaceBatches::Row>& rows, const double* bodies) {
   respond_all<V4>(batches, rows, bodies);
 }
 OBSCURA_WIDE void iterate_wide(std::vector<SpaceBatches::Batch>& batches,
                                std::vector<SpaceBatches::Row>& rows,
-                               const std::vector<SpaceBatches::Belt>& belts, double* bodies, bool back) {
-  iterate_all<V4, false>(batches, rows, belts, bodies, back, {}, nullptr);
+                               const std::vector<SpaceBatches::Belt>& belts, double* bodies, int begin,
+                               int end, bool back) {
+  iterate_all<V4, false>(batches, rows, belts, bodies, begin, end, back, {}, nullptr);
 }
 OBSCURA_WIDE void iterate_some_wide(std::vector<SpaceBatches::Batch>& batches,
                                     std::vector<SpaceBatches::Row>& rows,
-                                    const std::vector<SpaceBatches::Belt>& belts, double* bodies, bool back,
-                                    const std::vector<int>& open, Settling& settling) {
-  iterate_all<V4, true>(batches, rows, belts, bodies, back, open, &settling);
+                                    const std::vector<SpaceBatches::Belt>& belts, double* bodies, int begin,
+                                    int end, bool back, const std::vector<int>& open,
+                                    const Settling& settling) {
+  iterate_all<V4, true>(batches, rows, belts, bodies, begin, end, back, open, &settling);
 }
 
 }  // namespace
@@ -404,40 +405,56 @@ void SpaceBatches::find_pairs(std::span<const ContactConstraint<3>> contacts, st
   for (const Pair& pair : pairs_) sorted_[std::size_t(begin_[place(pair)]++)] = pair;
 }
 
+// batches of the sorted pairs, and how many rows each has
+void SpaceBatches::lay_out() {
+  batches_.clear(), level_begins_.clear();
+  for (int i = 0; i < int(sorted_.size()); ++i) {
+    const Pair& pair = sorted_[std::size_t(i)];
+    const bool begins = batches_.empty() || batches_.back().level != pair.level;
+    if (begins) level_begins_.push_back(int(batches_.size()));
+    if (begins || batches_.back().lanes == kLanes) {
+      Batch& made = batches_.emplace_back();
+      made.level = pair.level, made.first_pair = i;
+    }
+    Batch& g = batches_.back();
+    ++g.lanes, g.count = std::max(g.count, pair.count);
+  }
+  level_begins_.push_back(int(batches_.size()));
+  int rows = 0;
+  for (Batch& g : batches_) g.first = rows, rows += g.count;
+  rows_.resize(std::size_t(rows));
+}
+
 void SpaceBatches::build(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
                          std::span<const PointBody<3>> bodies) {
   find_pairs(contacts, which, bodies);
-  batches_.clear(), rows_.clear(), belts_.clear();
+  lay_out();
   const bool belts = std::any_of(which.begin(), which.end(),
                                  [&](int i) { return !contacts[std::size_t(i)].surface().isZero(0); });
-  const int none = int(bodies.size()) - 1;
-  int lane = kLanes, level = -1;
-  for (const Pair& pair : sorted_) {
-    if (lane == kLanes || pair.level != level) {
-      Batch& made = batches_.emplace_back();
-      std::fill_n(made.a, kLanes, none), std::fill_n(made.b, kLanes, none),
-          std::fill_n(made.island, kLanes, -1);
-      std::fill_n(made.at_a, kLanes, kBodyFours * none), std::fill_n(made.at_b, kLanes, kBodyFours * none);
-      std::fill_n(made.mu, kLanes, 0.0), std::fill_n(made.per_width, kLanes, 1.0);
-      made.first = int(rows_.size());
-      lane = 0, level = pair.level;
-    }
-    Batch& g = batches_.back();
-    for (; g.count < pair.count; ++g.count) {
-      Row& row = rows_.emplace_back(Row{});
-      std::fill_n(row.contact, kLanes, -1);
-      if (belts) belts_.emplace_back(Belt{});
-    }
-    add(pair, lane++, contacts, which);
-  }
+  belts_.assign(belts ? rows_.size() : 0, Belt{});
   const double* const numbers = bodies.data()->v.data();
-  four_lanes ? respond_wide(batches_, rows_, numbers) : respond_all<V2>(batches_, rows_, numbers);
-  load(contacts);
+  each(workers_, int(batches_.size()), kBatchPiece, [&](int begin, int end) {
+    const auto these = std::span(batches_).subspan(std::size_t(begin), std::size_t(end - begin));
+    for (Batch& g : these) fill(g, contacts, which, int(bodies.size()) - 1);
+    four_lanes ? respond_wide(these, rows_, numbers) : respond_all<V2>(these, rows_, numbers);
+  });
 }
 
-void SpaceBatches::add(const Pair& pair, int lane, std::span<const ContactConstraint<3>> contacts,
+void SpaceBatches::fill(Batch& g, std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
+                        int none) {
+  std::fill_n(g.a, kLanes, none), std::fill_n(g.b, kLanes, none), std::fill_n(g.island, kLanes, -1);
+  std::fill_n(g.at_a, kLanes, kBodyFours * none), std::fill_n(g.at_b, kLanes, kBodyFours * none);
+  std::fill_n(g.mu, kLanes, 0.0), std::fill_n(g.per_width, kLanes, 1.0);
+  for (int i = g.first; i < g.first + g.count; ++i) {
+    rows_[std::size_t(i)] = {};
+    std::fill_n(rows_[std::size_t(i)].contact, kLanes, -1);
+  }
+  for (int lane = 0; lane < g.lanes; ++lane) add(g, lane, contacts, which);
+}
+
+void SpaceBatches::add(Batch& g, int lane, std::span<const ContactConstraint<3>> contacts,
                        std::span<const int> which) {
-  Batch& g = batches_.back();
+  const Pair& pair = sorted_[std::size_t(g.first_pair + lane)];
   g.used = static_cast<unsigned char>(g.used | 1 << lane);
   g.a[lane] = pair.a, g.b[lane] = pair.b;
   g.at_a[lane] = kBodyFours * pair.a, g.at_b[lane] = kBodyFours * pair.b;
@@ -451,29 +468,34 @@ void SpaceBatches::add(const Pair& pair, int lane, std::span<const ContactConstr
     }
     g.mu[lane] = from.mu, g.per_width[lane] = from.per_width;
     r.contact[lane] = number;
+    load(r, lane, from);
   }
+}
+
+void SpaceBatches::load(Row& row, int lane, const ContactConstraint<3>& from) {
+  row.least[lane] = from.least, row.normal_impulse[lane] = from.normal_impulse;
+  for (int i = 0; i < 3; ++i) row.tangent_impulse[i][lane] = from.tangent_impulse[i];
 }
 
 void SpaceBatches::load(std::span<const ContactConstraint<3>> contacts) {
   for (Row& r : rows_) {
-    for (int lane = 0; lane < kLanes; ++lane) {
-      if (r.contact[lane] < 0) continue;
-      const ContactConstraint<3>& from = contacts[std::size_t(r.contact[lane])];
-      r.least[lane] = from.least, r.normal_impulse[lane] = from.normal_impulse;
-      for (int i = 0; i < 3; ++i) r.tangent_impulse[i][lane] = from.tangent_impulse[i];
-    }
+    for (int lane = 0; lane < kLanes; ++lane)
+      if (r.contact[lane] >= 0) load(r, lane, contacts[std::size_t(r.contact[lane])]);
   }
 }
 
 void SpaceBatches::store(std::span<ContactConstraint<3>> contacts) const {
-  for (const Row& r : rows_) {
-    for (int lane = 0; lane < kLanes; ++lane) {
-      if (r.contact[lane] < 0) continue;
-      ContactConstraint<3>& to = contacts[std::size_t(r.contact[lane])];
-      to.normal_impulse = r.normal_impulse[lane];
-      for (int i = 0; i < 3; ++i) to.tangent_impulse[i] = r.tangent_impulse[i][lane];
+  each(workers_, int(rows_.size()), kLanes * kBatchPiece, [&](int begin, int end) {
+    for (int at = begin; at < end; ++at) {
+      const Row& r = rows_[std::size_t(at)];
+      for (int lane = 0; lane < kLanes; ++lane) {
+        if (r.contact[lane] < 0) continue;
+        ContactConstraint<3>& to = contacts[std::size_t(r.contact[lane])];
+        to.normal_impulse = r.normal_impulse[lane];
+        for (int i = 0; i < 3; ++i) to.tangent_impulse[i] = r.tangent_impulse[i][lane];
+      }
     }
-  }
+  });
 }
 
 void SpaceBatches::set_islands(const Settling& settling) {
@@ -485,6 +507,29 @@ void SpaceBatches::set_islands(const Settling& settling) {
       if (g.island[lane] < 0) g.used = static_cast<unsigned char>(g.used & ~(1 << lane));
     }
     open_.push_back(int(&g - batches_.data()));
+  }
+  find_open_levels();
+}
+
+void SpaceBatches::find_open_levels() {
+  open_begins_.clear();
+  for (int i = 0; i < int(open_.size()); ++i) {
+    const auto level = [&](int at) { return batches_[std::size_t(open_[std::size_t(at)])].level; };
+    if (i == 0 || level(i) != level(i - 1)) open_begins_.push_back(i);
+  }
+  open_begins_.push_back(int(open_.size()));
+}
+
+// act(begin, end) for all, level by level; those of a level share no body that moves
+template <class Act>
+void SpaceBatches::by_level(std::span<const int> begins, bool back, const Act& act) const {
+  if (!workers_ || begins.empty()) return act(0, begins.empty() ? 0 : begins.back());
+  const int levels = int(begins.size()) - 1;
+  for (int i = 0; i < levels; ++i) {
+    const auto level = std::size_t(back ? levels - 1 - i : i);
+    const int first = begins[level];
+    each(workers_, begins[level + 1] - first, kBatchPiece,
+         [&](int begin, int end) { act(first + begin, first + end); });
   }
 }
 
@@ -528,8 +573,10 @@ void SpaceBatches::follow_directions(std::span<PointBody<3>> bodies, Settling& s
 
 void SpaceBatches::iterate(std::span<PointBody<3>> bodies, bool back) {
   double* const numbers = bodies.data()->v.data();
-  if (four_lanes) return iterate_wide(batches_, rows_, belts_, numbers, back);
-  iterate_all<V2, false>(batches_, rows_, belts_, numbers, back, {}, nullptr);
+  by_level(level_begins_, back, [&](int begin, int end) {
+    if (four_lanes) return iterate_wide(batches_, rows_, belts_, numbers, begin, end, back);
+    iterate_all<V2, false>(batches_, rows_, belts_, numbers, begin, end, back, {}, nullptr);
+  });
 }
 
 void SpaceBatches::iterate(std::span<PointBody<3>> bodies, bool back, Settling& settling) {
@@ -539,14 +586,29 @@ void SpaceBatches::iterate(std::span<PointBody<3>> bodies, bool back, Settling& 
     }
     return false;
   };
-  if (settling.narrowed) std::erase_if(open_, [&](int at) { return !open(batches_[std::size_t(at)]); });
+  if (settling.narrowed) {
+    std::erase_if(open_, [&](int at) { return !open(batches_[std::size_t(at)]); });
+    find_open_levels();
+  }
   settling.narrowed = false;
   for (Settling::Island& island : settling.islands) island.changed = false;
   double* const numbers = bodies.data()->v.data();
-  if (four_lanes) {
-    iterate_some_wide(batches_, rows_, belts_, numbers, back, open_, settling);
-  } else {
-    iterate_all<V2, true>(batches_, rows_, belts_, numbers, back, open_, &settling);
+  by_level(open_begins_, back, [&](int begin, int end) {
+    if (four_lanes)
+      return iterate_some_wide(batches_, rows_, belts_, numbers, begin, end, back, open_, settling);
+    iterate_all<V2, true>(batches_, rows_, belts_, numbers, begin, end, back, open_, &settling);
+  });
+  for (const int at : open_) {
+    const Batch& g = batches_[std::size_t(at)];
+    for (int lane = 0; g.on && lane < kLanes; ++lane) {
+      if (!(g.on >> lane & 1)) continue;
+      Settling::Island& island = settling.islands[std::size_t(g.island[lane])];
+      island.spent += g.count;
+      if (!(g.changed >> lane & 1)) continue;
+      island.changed = true;
+      settling.flags[std::size_t(g.a[lane])] |= Settling::kNext,
+          settling.flags[std::size_t(g.b[lane])] |= Settling::kNext;
+    }
   }
 }
 

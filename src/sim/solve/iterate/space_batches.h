@@ -6,6 +6,7 @@
 
 #include "sim/constraint/response.h"
 #include "sim/math/islands.h"
+#include "sim/math/workers.h"
 #include "sim/solve/iterate/contact_constraint.h"
 
 namespace obscura::sim {
@@ -55,6 +56,10 @@ class SpaceBatches {
  public:
   static constexpr int kLanes = 4;
 
+  /// Those of a level (find_pairs()) are shared by the threads. Keeps them by reference; null: there are
+  /// none.
+  explicit SpaceBatches(Workers* workers) : workers_(workers) {}
+
   /// Lays out the contacts `which`, ascending, of `contacts`, in which those of a pair follow each other.
   void build(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
              std::span<const PointBody<3>> bodies);
@@ -98,7 +103,9 @@ class SpaceBatches {
     int at_a[kLanes], at_b[kLanes];  // where they are, in fours of numbers
     int island[kLanes];
     int first = 0, count = 0;  // rows
-    unsigned char used = 0;    // a bit a lane
+    int level = 0, first_pair = 0, lanes = 0;
+    unsigned char used = 0;             // a bit a lane
+    unsigned char on = 0, changed = 0;  // likewise: what the last iteration of some did
   };
 
  private:
@@ -109,13 +116,22 @@ class SpaceBatches {
 
   void find_pairs(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
                   std::span<const PointBody<3>> bodies);
-  void add(const Pair& pair, int lane, std::span<const ContactConstraint<3>> contacts,
+  void lay_out();
+  void fill(Batch& batch, std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
+            int none);
+  void add(Batch& batch, int lane, std::span<const ContactConstraint<3>> contacts,
            std::span<const int> which);
+  void load(Row& row, int lane, const ContactConstraint<3>& from);
+  void find_open_levels();
+  template <class Act>
+  void by_level(std::span<const int> begins, bool back, const Act& act) const;
 
+  Workers* workers_;
   std::vector<Pair> pairs_, sorted_;
   std::vector<int> begin_;   // of each level and number of contacts, among the sorted
   std::vector<int> levels_;  // of each body: that of its next pair
   std::vector<Batch> batches_;
+  std::vector<int> level_begins_, open_begins_;  // among batches_ and open_, and where they end
   std::vector<Row> rows_;
   std::vector<Belt> belts_;                   // of rows; empty where there are none
   std::vector<Impulses> before_, direction_;  // of rows

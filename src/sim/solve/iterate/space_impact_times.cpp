@@ -11,6 +11,7 @@
 
 #include "sim/math/lie_step.h"
 #include "sim/solve/iterate/closing_time.h"
+#include "sim/solve/iterate/pieces.h"
 #include "sim/solve/iterate/space.h"
 
 namespace obscura::sim {
@@ -25,10 +26,15 @@ constexpr int kRenewals = 4;          // of a gap's features in a step
 
 }  // namespace
 
-// where a body is at a time of the step, after its last impact if it had one
-const SpaceIterative::Flown& SpaceIterative::flown(int body, double t, double h) const {
+// Where a body is at a time of the step, after its last impact if it had one. `own`: where to put it, for
+// threads that may not write to its course.
+const SpaceIterative::Flown& SpaceIterative::flown(int body, double t, double h, Flown* own) const {
   if (body >= int(model_.bodies.size()) || (inactive_[body] && drives_.number(body) < 0)) return flown_[body];
   if (t == std::max(0.0, when_[body])) return flown_[body];
+  if (own) {
+    if (t == h && courses_[body].ends) return courses_[body].end;
+    return *own = fly(body, t, h);
+  }
   // of many gaps of a body one asks what another has asked; most do not close, and ask where the step ends
   Course& course = courses_[body];
   if (t == h) {
@@ -90,9 +96,9 @@ SpaceIterative::Flown SpaceIterative::fly(int body, double t, double h) const {
 }
 
 // a gap at a time: how wide, and how fast it changes
-SpaceIterative::Instant SpaceIterative::instant(int i, double t, double h) const {
+SpaceIterative::Instant SpaceIterative::instant(int i, double t, double h, Flown* own) const {
   const ContactConstraint& touch = touches_[i];
-  Instant at{flown(touch.a, t, h).stance, flown(touch.b, t, h).stance, {}};
+  Instant at{flown(touch.a, t, h, own).stance, flown(touch.b, t, h, own ? own + 1 : nullptr).stance, {}};
   if (t == 0 && touch.renewals == 0 && when_[touch.a] < 0 && when_[touch.b] < 0) {
     at.now.value = touch.gap, at.now.point = touch.point, at.now.normal = touch.n;
   } else {
@@ -181,27 +187,34 @@ bool SpaceIterative::stays_apart(int i, double apart, double h) {
 
 // when a gap closes with an impact
 double SpaceIterative::closing_time(int i, double h) {
+  return stays_apart(i, kInTime * bounding_radius_[touches_[i].a], h) ? kNeverCloses : meeting_time(i, h);
+}
+
+// of one that may; `own` as of flown(), for both
+double SpaceIterative::meeting_time(int i, double h, Flown* own) const {
   const ContactConstraint& touch = touches_[i];
-  if (stays_apart(i, kInTime * bounding_radius_[touch.a], h)) return kNeverCloses;
   const double from = std::max({0.0, when_[touch.a], when_[touch.b]});
-  const Instant at = instant(i, from, h);
+  const Instant at = instant(i, from, h, own);
   const bool nears = at.speed < -restitution_threshold_;
   const double gap = at.now.value;
   if (gap <= 0) return nears ? from : kNeverCloses;
   return sim::closing_time(from, nears ? from - gap / at.speed : kNeverCloses, h, -restitution_threshold_,
                            [&](double when) {
-                             const Instant then = instant(i, when, h);
+                             const Instant then = instant(i, when, h, own);
                              return GapInTime{then.now.value, then.speed};
                            });
 }
 
-// the gaps of a pair at a time, by the features that are nearest then, into gaps_; how wide the least of them
-double SpaceIterative::find_features(int a, int b, double t, double h) {
-  const BodyMotion<D>&at_a = flown(a, t, h).stance, &at_b = flown(b, t, h).stance;
-  gaps_.clear();
-  sim::collide(a, model_.bodies[a].shape, at_a, b, model_.bodies[b].shape, at_b, pair_margin(a, b, h), gaps_);
+// the gaps of a pair at a time, by the features that are nearest then, into `gaps`; how wide the least of
+// them
+double SpaceIterative::find_features(int a, int b, double t, double h, std::vector<ContactCandidate<D>>& gaps,
+                                     Flown* own) const {
+  const BodyMotion<D>& at_a = flown(a, t, h, own).stance;
+  const BodyMotion<D>& at_b = flown(b, t, h, own ? own + 1 : nullptr).stance;
+  gaps.clear();
+  sim::collide(a, model_.bodies[a].shape, at_a, b, model_.bodies[b].shape, at_b, pair_margin(a, b, h), gaps);
   double least = 1e300;
-  for (ContactCandidate<D>& gap : gaps_) {
+  for (ContactCandidate<D>& gap : gaps) {
     gap.value = evaluate(gap, at_a, at_b).value;
     least = std::min(least, gap.value);
   }
@@ -219,12 +232,13 @@ bool SpaceIterative::features_change(const ContactConstraint& touch) const {
 // some gap is closed or, where none is, those that are nearest then; they are due anew.
 void SpaceIterative::renew_features(int first, double low, double high, double h) {
   const int a = touches_[first].a, b = touches_[first].b;
-  double closed = find_features(a, b, high, h), open = closed < 0 ? find_features(a, b, low, h) : 0;
+  double closed = find_features(a, b, high, h, gaps_),
+         open = closed < 0 ? find_features(a, b, low, h, gaps_) : 0;
   if (closed < 0 && open > 0) {
     // false position; what stays on its side twice counts half
     for (int side = 0; high - low > kInTime * h;) {
       const double part = std::clamp(open / (open - closed), kLeastPart, 1 - kLeastPart);
-      const double mid = low + part * (high - low), least = find_features(a, b, mid, h);
+      const double mid = low + part * (high - low), least = find_features(a, b, mid, h, gaps_);
       if (least > 0) {
         low = mid, open = least;
         if (side > 0) closed *= 0.5;
@@ -235,14 +249,14 @@ void SpaceIterative::renew_features(int first, double low, double high, double h
         side = -1;
       }
     }
-    find_features(a, b, low, h);
+    find_features(a, b, low, h, gaps_);
   }
   if (gaps_.empty()) return;
   std::stable_sort(gaps_.begin(), gaps_.end(),
                    [](const auto& p, const auto& q) { return p.value < q.value; });
   for (int i = first; i < int(touches_.size()) && touches_[i].a == a && touches_[i].b == b; ++i) {
+    if (touches_[i].renewals++ == 0) renewed_.emplace_back(i, features_[i]);
     features_[i] = gaps_[std::min(i - first, int(gaps_.size()) - 1)];
-    ++touches_[i].renewals;
     reach_[i].gap = -1e300;
     const double when = closing_time(i, h);
     touches_[i].passes = when == kNeverCloses;
@@ -250,54 +264,85 @@ void SpaceIterative::renew_features(int first, double low, double high, double h
   }
 }
 
-// Whether a pair meets by the features that are nearest then. Where others are, or have met before, its gaps
-// are due by those.
-bool SpaceIterative::has_nearest_features(const ImpactQueue::Due& due, double h) {
-  const ContactConstraint& touch = touches_[due.number];
+// Whether a touch that closes at a time does so by the features that are nearest then, and no others have met
+// before.
+bool SpaceIterative::meets_by_nearest(int i, double when, double h, std::vector<ContactCandidate<D>>& gaps,
+                                      Flown* own) const {
+  const ContactConstraint& touch = touches_[i];
   if (!features_change(touch)) return true;
-  const double least = find_features(touch.a, touch.b, due.when, h);
-  const auto feature = features_[due.number].key.feature;
+  const double least = find_features(touch.a, touch.b, when, h, gaps, own);
+  const auto feature = features_[i].key.feature;
   const double from = std::max({0.0, when_[touch.a], when_[touch.b]});
-  const bool found = std::any_of(gaps_.begin(), gaps_.end(),
+  const bool found = std::any_of(gaps.begin(), gaps.end(),
                                  [&](const ContactCandidate<D>& gap) { return gap.key.feature == feature; });
   // what lies in each other from the first has not met before
-  if (found &&
-      (least >= -kTogether * bounding_radius_[touch.a] || find_features(touch.a, touch.b, from, h) <= 0))
+  return found && (least >= -kTogether * bounding_radius_[touch.a] ||
+                   find_features(touch.a, touch.b, from, h, gaps, own) <= 0);
+}
+
+// The same of one that is due. Where other features are nearer, the gaps of its pair are due by those.
+bool SpaceIterative::has_nearest_features(const ImpactQueue::Due& due, double h) {
+  const ContactConstraint& touch = touches_[due.number];
+  // before anything has been struck it is known
+  const bool known = due.rounds == 0;
+  if (known ? bool(nearest_[due.number]) : meets_by_nearest(due.number, due.when, h, gaps_, nullptr))
     return true;
+  const double from = std::max({0.0, when_[touch.a], when_[touch.b]});
   int first = due.number;
   while (first > 0 && touches_[first - 1].a == touch.a && touches_[first - 1].b == touch.b) --first;
   renew_features(first, from, due.when, h);
   return false;
 }
 
+// Whether a pair, whose touches these are, may come to lie in each other deeper than the features of the
+// step's start say, while none of its gaps closes; `least`: how wide the least of them is then.
+bool SpaceIterative::may_turn_into(int first, int end, double h, Flown* own, double& least) const {
+  const ContactConstraint& touch = touches_[first];
+  const auto turned = [&](int body) {
+    return 2 * h * bounding_radius_[body] * std::sqrt(stances_[body].w.squaredNorm());
+  };
+  const double turns = turned(touch.a) + turned(touch.b);
+  int wide = first;
+  while (wide < end && reach_[wide].least(h) > turns + kLevel * bounding_radius_[touch.a]) ++wide;
+  if (wide == end) return false;
+  least = 1e300;
+  for (int i = first; i < end; ++i) least = std::min(least, instant(i, h, h, own).now.value);
+  if (least > turns || least - turns > -kTogether * bounding_radius_[touch.a]) return false;
+  // nothing lies deeper where they stay so far apart along the normal of a gap
+  for (int i = first; i < end; ++i) {
+    const Instant at = instant(i, h, h, own);
+    if (separation_along(at.now.normal, model_.bodies[touch.a].shape, at.a, model_.bodies[touch.b].shape,
+                         at.b) >= std::min(0.0, least) - kLevel * bounding_radius_[touch.a])
+      return false;
+  }
+  return true;
+}
+
 // Pairs that come to lie in each other, deeper than the features of the step's start say, none of which
 // closes.
 void SpaceIterative::find_turned_pairs(double h) {
+  turning_.clear();
   for (int first = 0, end = 0; first < int(touches_.size()); first = end) {
     const ContactConstraint& touch = touches_[first];
     bool due = false;
-    double least = 1e300;
     for (end = first; end < int(touches_.size()) && touches_[end].a == touch.a && touches_[end].b == touch.b;
          ++end)
       due = due || !touches_[end].passes;
-    if (due || !features_change(touch)) continue;
-    for (int i = first; i < end; ++i) least = std::min(least, instant(i, h, h).now.value);
-    const auto turned = [&](int body) {
-      return 2 * h * bounding_radius_[body] * std::sqrt(stances_[body].w.squaredNorm());
-    };
-    const double turns = turned(touch.a) + turned(touch.b);
-    if (least > turns || least - turns > -kTogether * bounding_radius_[touch.a]) continue;
-    // nothing lies deeper where they stay so far apart along the normal of a gap
-    bool apart = false;
-    for (int i = first; i < end && !apart; ++i) {
-      const Instant at = instant(i, h, h);
-      apart =
-          separation_along(at.now.normal, model_.bodies[touch.a].shape, at.a, model_.bodies[touch.b].shape,
-                           at.b) >= std::min(0.0, least) - kLevel * bounding_radius_[touch.a];
+    if (!due && features_change(touch)) turning_.push_back({first, end});
+  }
+  each(workers(), int(turning_.size()), kBodyPiece, [&](int begin, int end) {
+    Flown own[2];
+    for (int i = begin; i < end; ++i) {
+      TurningPair& pair = turning_[std::size_t(i)];
+      pair.may = may_turn_into(pair.first, pair.end, h, own, pair.least);
     }
-    if (apart) continue;
-    if (find_features(touch.a, touch.b, h, h) < std::min(0.0, least) - kTogether * bounding_radius_[touch.a])
-      renew_features(first, 0, h, h);
+  });
+  for (const TurningPair& pair : turning_) {
+    if (!pair.may) continue;
+    const ContactConstraint& touch = touches_[pair.first];
+    if (find_features(touch.a, touch.b, h, h, gaps_) <
+        std::min(0.0, pair.least) - kTogether * bounding_radius_[touch.a])
+      renew_features(pair.first, 0, h, h);
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "sim/solve/iterate/closing_time.h"
 #include "sim/solve/iterate/endless_impacts.h"
+#include "sim/solve/iterate/pieces.h"
 #include "sim/solve/iterate/space.h"
 
 namespace obscura::sim {
@@ -122,7 +123,7 @@ bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work)
     for (const int side : {touches_[i].a, touches_[i].b}) {
       each_tied(side, [&](int body) {
         if (when_[body] != t) flown_[body] = flown(body, t, h), when_[body] = t;
-        courses_[body] = {};  // also of a second impact in this instant
+        courses_[body].forget();  // also of a second impact in this instant
       });
     }
   }
@@ -171,42 +172,13 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
   bool any = false;
   for (int i = 0; i < int(touches_.size()) && !any; ++i) any = fast(i);
   if (!any) return;
-  flown_.assign(n + 1, {}), courses_.assign(n + 1, {});
-  for (int i = 0; i < n; ++i) {
-    flown_[i].stance = stances_[i];
-    if (const int k = turning(state, i); k >= 0) flown_[i].turn = turn_[k];
-  }
-  fastest_.assign(n + 1, {}), twist_.assign(n + 1, AngularVec<D>::Zero());
-  for (int i = 0; i < n; ++i) {
-    if (inactive_[i] && drives_.number(i) < 0) continue;
-    fastest_[i].gain = std::sqrt((v_free_[i] - stances_[i].v).squaredNorm());
-    const int k = turning(state, i);
-    if (k >= 0 && drives_.number(i) >= 0) {
-      fastest_[i].turns = std::sqrt((w_free_[k] - stances_[i].w).squaredNorm());
-    } else if (k >= 0 && model_.bodies[i].turns()) {
-      const AngularVec<D>& inertia = model_.bodies[i].inertia;
-      const Rotation<D>&from = stances_[i].room_from_body, to = rotation<D>(turn_free_[k]);
-      const AngularVec<D> ends = carried_spin<D>(inertia, to, from, w_free_[k]);
-      twist_[i] = inertia_times<D>(inertia, from, AngularVec<D>(ends - stances_[i].w));
-      fastest_[i].turns = std::sqrt((ends - stances_[i].w).squaredNorm());
-    }
-    limit_speed(i, h);
-  }
-  reach_.resize(touches_.size());
-  for (int i = 0; i < int(touches_.size()); ++i) reach_[i] = {touches_[i].gap, 0, approach_limit(i, h)};
-  for (int i = 0; i < int(touches_.size()); ++i) {
-    if (!fast(i)) continue;
-    const double when = closing_time(i, h);
-    if (when < kNeverCloses)
-      due_.push(when, i, 0);
-    else
-      touches_[i].passes = true;
-  }
-  row_features_ = features_;
+  begin_flights(state, h);
+  find_closing(h);
+  renewed_.clear();
   rounds_.assign(n + 1, 0), crowded_.assign(n + 1, 0);
   find_turned_pairs(h);
   if (due_.empty()) {
-    features_.swap(row_features_);
+    restore_features();
     return;
   }
 
@@ -251,7 +223,7 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
       if (when < kNeverCloses) due_.push(when, i, rounds(i));
     }
   }
-  features_.swap(row_features_);
+  restore_features();
   if (!struck_) return;
 
   for (int i = 0; i < int(touches_.size()); ++i) {
@@ -276,6 +248,77 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
     }
   }
   energy_guard_.open(state);
+}
+
+// where bodies begin, and how fast they may become
+void SpaceIterative::begin_flights(const State<D>& state, double h) {
+  const int n = int(model_.bodies.size());
+  flown_.resize(n + 1), courses_.resize(n + 1), fastest_.resize(n + 1), twist_.resize(n + 1);
+  const auto begin = [&](int i) {
+    flown_[i] = {}, courses_[i].forget(), fastest_[i] = {}, twist_[i].setZero();
+    if (i == n) return;
+    flown_[i].stance = stances_[i];
+    if (const int k = turning(state, i); k >= 0) flown_[i].turn = turn_[k];
+    if (inactive_[i] && drives_.number(i) < 0) return;
+    fastest_[i].gain = std::sqrt((v_free_[i] - stances_[i].v).squaredNorm());
+    const int k = turning(state, i);
+    if (k >= 0 && drives_.number(i) >= 0) {
+      fastest_[i].turns = std::sqrt((w_free_[k] - stances_[i].w).squaredNorm());
+    } else if (k >= 0 && model_.bodies[i].turns()) {
+      const AngularVec<D>& inertia = model_.bodies[i].inertia;
+      const Rotation<D>&from = stances_[i].room_from_body, to = rotation<D>(turn_free_[k]);
+      const AngularVec<D> ends = carried_spin<D>(inertia, to, from, w_free_[k]);
+      twist_[i] = inertia_times<D>(inertia, from, AngularVec<D>(ends - stances_[i].w));
+      fastest_[i].turns = std::sqrt((ends - stances_[i].w).squaredNorm());
+    }
+    limit_speed(i, h);
+  };
+  each(workers(), n + 1, kBodyPiece, [&](int first, int end) {
+    for (int i = first; i < end; ++i) begin(i);
+  });
+}
+
+// those gaps that close fast before anything has been struck, each due then
+void SpaceIterative::find_closing(double h) {
+  const int count = int(touches_.size());
+  reach_.resize(touches_.size()), may_close_.resize(touches_.size()), meets_at_.resize(touches_.size());
+  nearest_.resize(touches_.size());
+  each(workers(), count, kTouchPiece, [&](int first, int end) {
+    for (int i = first; i < end; ++i) {
+      ContactConstraint& touch = touches_[i];
+      reach_[i] = {touch.gap, 0, approach_limit(i, h)}, may_close_[i] = 0;
+      if (most_passing(touch) < restitution_threshold_) continue;
+      touch.passes = stays_apart(i, kInTime * bounding_radius_[touch.a], h), may_close_[i] = !touch.passes;
+    }
+  });
+  const auto pieces = std::size_t(count / kBodyPiece + 1);
+  if (nearest_gaps_.size() < pieces) nearest_gaps_.resize(pieces);
+  // where most are asked for
+  ends_.assign(courses_.size(), 0);
+  for (int i = 0; i < count; ++i)
+    if (touches_[i].passes || may_close_[i]) ends_[touches_[i].a] = ends_[touches_[i].b] = 1;
+  each(workers(), int(model_.bodies.size()), kBodyPiece, [&](int first, int end) {
+    for (int i = first; i < end; ++i)
+      if (ends_[i] && (!inactive_[i] || drives_.number(i) >= 0))
+        courses_[i].end = fly(i, h, h), courses_[i].ends = true;
+  });
+  each(workers(), count, kBodyPiece, [&](int first, int end) {
+    Flown own[2];
+    std::vector<ContactCandidate<D>>& gaps = nearest_gaps_[std::size_t(first / kBodyPiece)];
+    for (int i = first; i < end; ++i) {
+      if (!may_close_[i]) continue;
+      meets_at_[i] = meeting_time(i, h, own);
+      touches_[i].passes = !(meets_at_[i] < kNeverCloses);
+      if (!touches_[i].passes) nearest_[i] = meets_by_nearest(i, meets_at_[i], h, gaps, own);
+    }
+  });
+  for (int i = 0; i < count; ++i)
+    if (may_close_[i] && !touches_[i].passes) due_.push(meets_at_[i], i, 0);
+}
+
+// features of the step's start, where impacts have looked at others
+void SpaceIterative::restore_features() {
+  for (const auto& [i, feature] : renewed_) features_[i] = feature;
 }
 
 }  // namespace obscura::sim

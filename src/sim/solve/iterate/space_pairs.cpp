@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/solve/iterate/pieces.h"
 #include "sim/solve/iterate/space.h"
 #include "sim/solve/iterate/substeps.h"
 
@@ -49,32 +50,50 @@ void SpaceIterative::find(StepPart<D> step) {
   const double elapsed = double(step.state.step % every_) / value(model_.rate) + step.substep * h;
   const std::int64_t number = std::llround(elapsed / h);
   const int n = int(model_.bodies.size());
-  bounds_.resize(n), margin_.resize(n), swing_.resize(n), touches_.clear();
-  known_.swap(features_), features_.clear();
+  bounds_.resize(n), margin_.resize(n), swing_.resize(n);
+  known_.swap(features_);
   // the first substep begins where the step does: of what has been found for the step, what is near enough
   const bool same = number == 0 && step.h < found_for_ && inactive_ == inactive_then_ && !too_fast();
   found_for_ = step.h;
-  for (int i = 0; i < n; ++i) {
-    bounds_[i] = bounds(model_.bodies[i].shape, stances_[i]);
-    margin_[i] = margin(i, h), swing_[i] = bounding_radius_[i] * std::sqrt(moving_[i].w.squaredNorm());
-    const Vec<D> more = Vec<D>::Constant(margin_[i]);
-    bounds_[i].lower -= more, bounds_[i].upper += more;
-  }
+  each(workers(), n, kBodyPiece, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      bounds_[i] = bounds(model_.bodies[i].shape, stances_[i]);
+      margin_[i] = margin(i, h), swing_[i] = bounding_radius_[i] * std::sqrt(moving_[i].w.squaredNorm());
+      const Vec<D> more = Vec<D>::Constant(margin_[i]);
+      bounds_[i].lower -= more, bounds_[i].upper += more;
+    }
+  });
   find_near();
+  const Search search{h, number, same, step.state.contacts};
+  found_.resize(std::size_t((n + kPairPiece - 1) / kPairPiece));
+  for (Found& found : found_) found.all.clear();
+  each(workers(), n, kPairPiece,
+       [&](int begin, int end) { find_of(begin, end, search, found_[std::size_t(begin / kPairPiece)]); });
+  begin_constraints();
+}
 
-  // ascending: of a body first its walls, from the last
-  auto pair = near_pairs_.begin();
-  std::span<const Contact<D>> old = step.state.contacts;
-  std::size_t memo = 0;
-  for (int a = 0; a < n; ++a) {
+// The features of bodies from `begin` on before `end` with walls and with bodies of higher numbers,
+// ascending: of a body first its walls, from the last.
+void SpaceIterative::find_of(int begin, int end, const Search& search, Found& found) {
+  const double h = search.h;
+  auto pair = std::lower_bound(near_pairs_.begin(), near_pairs_.end(), std::pair(begin, -1));
+  std::span<const Contact<D>> old = search.contacts;
+  old = old.subspan(std::size_t(std::lower_bound(old.begin(), old.end(), begin,
+                                                 [](const auto& c, int body) { return c.key.a < body; }) -
+                                old.begin()));
+  auto memo = std::size_t(std::lower_bound(known_.begin(), known_.end(), begin,
+                                           [](const auto& gap, int body) { return gap.key.a < body; }) -
+                          known_.begin());
+  std::vector<ContactCandidate<D>>& gaps = found.of_pair;
+  const auto keep = [&] { found.all.insert(found.all.end(), gaps.begin(), gaps.end()); };
+  for (int a = begin; a < end; ++a) {
     const Body<D>& p = model_.bodies[a];
     for (int wall = int(model_.walls.size()); !inactive_[a] && !p.handout && wall-- > 0;) {
       const Wall<D>& w = model_.walls[wall];
       if ((stances_[a].x - w.point).dot(w.normal) > bounding_radius_[a] + margin_[a]) continue;
-      gaps_.clear();
-      sim::collide(a, p.shape, stances_[a], wall, w, margin_[a], gaps_);
-      const Material made = material(model_, a, -1 - wall);
-      for (const ContactCandidate<D>& gap : gaps_) add(gap, made);
+      gaps.clear();
+      sim::collide(a, p.shape, stances_[a], wall, w, margin_[a], gaps);
+      keep();
     }
     for (; pair != near_pairs_.end() && pair->first == a; ++pair) {
       const int b = pair->second;
@@ -83,22 +102,40 @@ void SpaceIterative::find(StepPart<D> step) {
       const double within = pair_margin(a, b, h);
       if (stays_apart(apart, a, b, within)) continue;
       apart.clearance.apart = -1e300;
-      gaps_.clear();
-      if (same) {
-        take_known(a, b, within, memo);
-      } else if (number == 0 || !keep_features(a, b, number, h, old, memo)) {
+      gaps.clear();
+      if (search.same) {
+        take_known(a, b, within, memo, gaps);
+      } else if (search.number == 0 || !keep_features(a, b, search, old, memo, gaps)) {
         const Body<D>& q = model_.bodies[b];
         Clearance clearance;
-        sim::collide(a, p.shape, stances_[a], b, q.shape, stances_[b], within, gaps_, clearance);
-        if (gaps_.empty())
+        sim::collide(a, p.shape, stances_[a], b, q.shape, stances_[b], within, gaps, clearance);
+        if (gaps.empty())
           apart = {clearance, stances_[a].x - stances_[b].x,
                    turned_[std::size_t(a)] + turned_[std::size_t(b)]};
       }
-      if (gaps_.empty()) continue;
-      const Material made = material(model_, a, b);
-      for (const ContactCandidate<D>& gap : gaps_) add(gap, made);
+      keep();
     }
   }
+}
+
+// what has been found, as the iterations see it
+void SpaceIterative::begin_constraints() {
+  int count = 0;
+  for (Found& found : found_) found.first = count, count += int(found.all.size());
+  touches_.resize(std::size_t(count)), features_.resize(std::size_t(count));
+  each(workers(), int(found_.size()), 1, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      auto at = std::size_t(found_[std::size_t(i)].first);
+      Material made;
+      const ContactCandidate<D>* last = nullptr;
+      for (const ContactCandidate<D>& gap : found_[std::size_t(i)].all) {
+        if (!last || last->key.a != gap.key.a || last->key.b != gap.key.b)
+          made = material(model_, gap.key.a, gap.key.b);
+        features_[at] = gap, touches_[at] = constraint(gap, made);
+        last = &gap, ++at;
+      }
+    }
+  });
 }
 
 // Pairs whose bounds may overlap: those of wider bounds, as long as no body leaves its own.
@@ -136,20 +173,21 @@ bool SpaceIterative::stays_apart(const Apart& apart, int a, int b, double margin
   return apart.clearance.apart - moved - turned * apart.clearance.per_turn * reach >= margin;
 }
 
-// Those features of a pair that are known and less than `margin` apart, into gaps_. `memo`: as below.
-void SpaceIterative::take_known(int a, int b, double margin, std::size_t& memo) {
+// Those features of a pair that are known and less than `margin` apart, into `gaps`. `memo`: as below.
+void SpaceIterative::take_known(int a, int b, double margin, std::size_t& memo,
+                                std::vector<ContactCandidate<D>>& gaps) const {
   const auto before = [&](const ContactKey& key) { return key.a != a ? key.a < a : key.b < b; };
   while (memo < known_.size() && before(known_[memo].key)) ++memo;
   for (; memo < known_.size() && known_[memo].key.a == a && known_[memo].key.b == b; ++memo) {
-    if (known_[memo].value < margin) gaps_.push_back(known_[memo]);
+    if (known_[memo].value < margin) gaps.push_back(known_[memo]);
   }
 }
 
-// The features of a pair's contacts in the state, into gaps_; false where it has none, where they are to be
+// The features of a pair's contacts in the state, into `gaps`; false where it has none, where they are to be
 // looked for in the substep of this number, or a key does not say all. `old`: contacts from this pair on;
 // `memo`: where its keys would be among those known.
-bool SpaceIterative::keep_features(int a, int b, std::int64_t number, double h,
-                                   std::span<const Contact<D>>& old, std::size_t& memo) {
+bool SpaceIterative::keep_features(int a, int b, const Search& search, std::span<const Contact<D>>& old,
+                                   std::size_t& memo, std::vector<ContactCandidate<D>>& gaps) const {
   const auto before = [&](const Contact<D>& c) { return c.key.a != a ? c.key.a < a : c.key.b < b; };
   std::size_t begin = 0, end = 0;
   while (begin < old.size() && before(old[begin])) ++begin;
@@ -157,27 +195,28 @@ bool SpaceIterative::keep_features(int a, int b, std::int64_t number, double h,
   const std::span<const Contact<D>> its = old.subspan(begin, end - begin);
   old = old.subspan(begin);
   if (its.empty()) return false;
-  const double way = h * passing_speed(a, b), most = kSlow * std::min(width_[a], width_[b]);
+  const double way = search.h * passing_speed(a, b), most = kSlow * std::min(width_[a], width_[b]);
   std::int64_t keeps = 1;  // substeps
-  while (keeps <= number && double(2 * keeps) * way <= most) keeps *= 2;
-  if (number % keeps == 0) return false;
+  while (keeps <= search.number && double(2 * keeps) * way <= most) keeps *= 2;
+  if (search.number % keeps == 0) return false;
   for (const Contact<D>& contact : its) {
     while (memo < known_.size() && known_[memo].key < contact.key) ++memo;
     if (memo < known_.size() && known_[memo].key == contact.key && !known_[memo].of_poses) {
-      gaps_.push_back(known_[memo]);
+      gaps.push_back(known_[memo]);
       continue;
     }
     const auto named = named_candidate(contact.key, model_.bodies[a].shape, model_.bodies[b].shape);
     if (!named) {
-      gaps_.clear();
+      gaps.clear();
       return false;
     }
-    gaps_.push_back(*named);
+    gaps.push_back(*named);
   }
   return true;
 }
 
-void SpaceIterative::add(const ContactCandidate<D>& gap, const Material& pair) {
+SpaceIterative::ContactConstraint SpaceIterative::constraint(const ContactCandidate<D>& gap,
+                                                             const Material& pair) const {
   static const BodyMotion<D> room;
   const int none = int(model_.bodies.size());
   const int a = gap.key.a, b = gap.key.b < 0 ? none : gap.key.b;
@@ -193,7 +232,7 @@ void SpaceIterative::add(const ContactCandidate<D>& gap, const Material& pair) {
   touch.per_width = 1 / (b == none ? width_[a] : std::min(width_[a], width_[b]));
 
   if (carries(a) || carries(b)) touch.belt = belt(touch);
-  touches_.push_back(touch), features_.push_back(gap);
+  return touch;
 }
 
 }  // namespace obscura::sim

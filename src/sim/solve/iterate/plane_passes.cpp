@@ -1,0 +1,89 @@
+// The wide passes of a substep over all batches, colour by colour. Those of a colour share no body that
+// moves, so that threads share them, with the same bits.
+
+#include <algorithm>
+#include <atomic>
+
+#include "sim/solve/iterate/pieces.h"
+#include "sim/solve/iterate/plane.h"
+
+namespace obscura::sim {
+
+using plane::kLanes;
+
+// act(begin, end, number) for all batches; the numbers of pieces ascend as these do
+template <class Act>
+void PlaneIterative::by_colour(const Act& act) {
+  if (!workers()) return act(0, int(batches_.size()), 0);
+  const int colours = int(begin_.size()) - 1;
+  for (int colour = 0; colour < colours; ++colour) {
+    const int first = begin_[std::size_t(colour)] / kLanes, last = begin_[std::size_t(colour) + 1] / kLanes;
+    const auto number = [&](int at) { return (first + at) / kPlaneBatchPiece + colour; };
+    if (colour + 1 < colours) {
+      each(workers(), last - first, kPlaneBatchPiece,
+           [&](int begin, int end) { act(first + begin, first + end, number(begin)); });
+    } else if (first < last) {
+      act(first, last, number(0));  // pairs for which no colour was left share bodies
+    }
+  }
+}
+
+plane::StepConstants PlaneIterative::constants_from(int batch) const {
+  plane::StepConstants its = constants_;
+  if (its.least) its.least += batch;
+  return its;
+}
+
+void PlaneIterative::apply_warm_start() {
+  const std::size_t most = batches_.size() / kPlaneBatchPiece + begin_.size() + 1;
+  if (seen_.size() < most) seen_.resize(most);
+  for (Seen& seen : seen_) seen.deep = false, seen.slow.clear(), seen.fast.clear();
+  by_colour([&](int begin, int end, int number) {
+    Seen& seen = seen_[std::size_t(number)];
+    seen.deep = plane::warm_start(batches_.data() + begin, end - begin, poses_.data(), old_.data(),
+                                  moving_.data(), constants_, seen.slow, seen.fast);
+    for (plane::LaneList* list : {&seen.slow, &seen.fast})
+      for (int& lane : *list) lane += kLanes * begin;
+  });
+  deep_ = false, slow_.clear(), fast_.clear();
+  for (const Seen& seen : seen_) {
+    deep_ = deep_ || seen.deep;
+    slow_.insert(slow_.end(), seen.slow.begin(), seen.slow.end());
+    fast_.insert(fast_.end(), seen.fast.begin(), seen.fast.end());
+  }
+}
+
+void PlaneIterative::iterate_all() {
+  by_colour([&](int begin, int end, int) {
+    plane::iterate(batches_.data() + begin, end - begin, poses_.data(), moving_.data(),
+                   constants_from(begin));
+  });
+}
+
+// how many pairs these were
+int PlaneIterative::iterate_active() {
+  std::atomic<int> pairs = 0;
+  const auto some = [&](int begin, int end, int) {
+    pairs += plane::iterate(batches_.data() + begin, end - begin, poses_.data(), moving_.data(),
+                            constants_from(begin), active_bodies_);
+  };
+  active_bodies_.groups.empty() ? by_colour(some) : some(0, int(batches_.size()), 0);
+  plane::activate_next(active_bodies_);
+  return pairs;
+}
+
+void PlaneIterative::iterate_last(Contact<D>* contacts) {
+  by_colour([&](int begin, int end, int) {
+    plane::iterate_last(batches_.data() + begin, end - begin, poses_.data(), moving_.data(),
+                        constants_from(begin), contacts);
+  });
+}
+
+void PlaneIterative::project_all(double share, AllowedOverlap allowed) {
+  by_colour([&](int begin, int end, int) {
+    plane::project(batches_.data() + begin, projections_.data() + begin, end - begin, poses_.data(),
+                   push_.data(), share, allowed);
+  });
+}
+
+}  // namespace obscura::sim
