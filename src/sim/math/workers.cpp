@@ -1,7 +1,5 @@
 #include "sim/math/workers.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
@@ -27,11 +25,11 @@ void relax() {
 // The pieces of a thread that nobody has begun, from `begin` on before `end`, and which loop they are of: one
 // word, so that who takes a piece knows that it is of the loop that is under way. The thread itself takes the
 // first, so that it comes to the same memory in loop after loop; who has nothing left of his own, the last.
-struct alignas(64) Share {
+struct Share {
   static constexpr int kBits = 20;
   static constexpr std::uint64_t kMost = (1u << kBits) - 1;
 
-  std::atomic<std::uint64_t> word{0};
+  alignas(64) std::atomic<std::uint64_t> word{0};
 
   void set(std::uint64_t loop, std::uint64_t begin, std::uint64_t end) {
     word = loop << (2 * kBits) | begin << kBits | end;
@@ -63,8 +61,6 @@ struct Workers::Crew {
   std::mutex noting;
   int failed = -1;  // the first piece that has thrown, and what
   std::exception_ptr error;
-  std::vector<std::thread> threads;
-  pid_t process = getpid();
 
   explicit Crew(int size) : shares(std::size_t(size)) {}
 
@@ -129,15 +125,14 @@ struct Workers::Crew {
   }
 };
 
-Workers::Workers(int threads) : crew_(std::make_unique<Crew>(std::max(1, threads))) {
-  for (int i = 1; i < threads; ++i) crew_->threads.emplace_back([crew = crew_.get(), i] { crew->serve(i); });
+// Threads are let go, and each holds what it works on: nobody waits for those that a forked process lacks.
+Workers::Workers(int threads) : crew_(std::make_shared<Crew>(std::max(1, threads))) {
+  for (int i = 1; i < threads; ++i) std::thread([crew = crew_, i] { crew->serve(i); }).detach();
 }
 
 Workers::~Workers() {
   crew_->ends = true;
   crew_->wake();
-  // in a forked process there are none
-  for (std::thread& thread : crew_->threads) getpid() == crew_->process ? thread.join() : thread.detach();
 }
 
 int Workers::threads() const { return int(crew_->shares.size()); }
@@ -146,7 +141,7 @@ void Workers::share(int count, int piece, Call call, const void* act) {
   if (count <= 0) return;
   Crew& it = *crew_;
   bool free = false;
-  if (count <= piece || it.threads.empty() || !it.busy.compare_exchange_strong(free, true))
+  if (count <= piece || it.shares.size() == 1 || !it.busy.compare_exchange_strong(free, true))
     return call(act, 0, count);
   it.call = call, it.act = act, it.count = count;
   it.piece = std::max(piece, int(count / Share::kMost) + 1);

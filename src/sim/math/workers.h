@@ -4,9 +4,9 @@
 
 namespace obscura::sim {
 
-/// Threads that share the loops of one caller. They live as long as this does and sleep while there is
-/// nothing to do. A caller never waits for a thread that has not come: it does itself what nobody has begun,
-/// so a loop ends in a forked process too, where the threads are missing.
+/// Threads that share the loops of one caller. They end with this and sleep while there is nothing to do. A
+/// caller never waits for a thread that has not come: it does itself what nobody has begun, so a loop ends in
+/// a forked process too, where the threads are missing.
 class Workers {
  public:
   /// `threads` of them, the caller among them; one at least.
@@ -35,7 +35,7 @@ class Workers {
 
   void share(int count, int piece, Call call, const void* act);
 
-  std::unique_ptr<Crew> crew_;
+  std::shared_ptr<Crew> crew_;
 };
 
 /// The same by threads that there may be none of: then one call for all.
