@@ -279,7 +279,8 @@ struct State {
 /// A scene that runs: its bodies at an instant of the physics clock, which goes by whole steps.
 class World {
  public:
-  /// `threads` share a step where there is enough to share; 0: one a core. No bit hangs on it.
+  /// `threads` share a step where there is enough to share; 0: one a core. No bit hangs on it. Throws
+  /// UsageError for less than 0.
   explicit World(const Scene& scene, int threads = 1);
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
@@ -300,8 +301,8 @@ class World {
   /// The number of the body of a name. Throws UsageError, with the name that was probably meant.
   int body(std::string_view name) const;
 
-  // Columns are views of the state itself: they follow the world, and are good for as long as it is there.
-  // They are in the axes of the room, also where the scene has an observer.
+  // Columns are views of the state itself: they follow the world, and are good for as long as it is there. They
+  // are in the axes of the room, also where the scene has an observer.
   Columns positions() const;   ///< of centres of mass, m: a row a body
   Columns velocities() const;  ///< m/s: a row a body
   /// Of the bodies that turn, from first_turning() on: rad, not wrapped; in space quaternions x, y, z, w of
@@ -452,4 +453,4 @@ struct Sweep {
 Sweep sweep(const Scene& scene, const std::vector<std::string>& vary, const std::vector<std::string>& measure,
             int jobs = 0);
 
-}  // namespace gnu::visibility("default")]]obscura
+}  // namespace obscura

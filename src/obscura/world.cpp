@@ -25,6 +25,8 @@ void copy(const sim::Vec3& from, double (&to)[3]) { std::copy_n(from.data(), 3, 
 
 World::Inside::Inside(const Scene& of, int threads) : scene(of) {
   const scene::Scene& its = of.inside().scene;
+  if (threads < 0)
+    throw UsageError(fmt::format("{} threads: expected 1 or more, or 0 for one a core", threads));
   if (threads == 1) {
     run = its.shown_run();
   } else {

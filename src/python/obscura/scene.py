@@ -243,16 +243,17 @@ class World(_obscura.World):
     def __init__(self, scene: Scene, threads: int = 1):
         super().__init__(scene._built(), threads)
         self.scene = scene
+        self._threads = threads
 
     def __reduce__(self):
-        return _world, (self.scene, self.save())
+        return _world, (self.scene, self.save(), self._threads)
 
     def __repr__(self) -> str:
         return f"<World {self.scene.name} at {self.time:g} s>"
 
 
-def _world(scene: Scene, state) -> World:
-    world = World(scene)
+def _world(scene: Scene, state, threads: int = 1) -> World:
+    world = World(scene, threads)
     world.restore(state)
     return world
 

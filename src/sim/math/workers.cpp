@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kSpins = 20000;  // looks for a loop before a thread sleeps: about half a millisecond
+constexpr int kSpins = 20000;  // looks for a loop before a thread sleeps: some tenths of a millisecond
 
 void relax() {
 #if defined(__x86_64__)
@@ -22,23 +23,21 @@ void relax() {
 #endif
 }
 
-// The pieces of a thread that nobody has begun, from `begin` on before `end`, and which loop they are of: one
-// word, so that who takes a piece knows that it is of the loop that is under way. The thread itself takes the
-// first, so that it comes to the same memory in loop after loop; who has nothing left of his own, the last.
+// The pieces of a thread that nobody has begun, from `begin` on before `end`, in one word, so that each is
+// taken once. The thread itself takes the first, so that it comes to the same memory in loop after loop; one
+// that has nothing left of its own takes the last.
 struct Share {
   static constexpr int kBits = 20;
   static constexpr std::uint64_t kMost = (1u << kBits) - 1;
 
   alignas(64) std::atomic<std::uint64_t> word{0};
 
-  void set(std::uint64_t loop, std::uint64_t begin, std::uint64_t end) {
-    word = loop << (2 * kBits) | begin << kBits | end;
-  }
+  void set(std::uint64_t begin, std::uint64_t end) { word = begin << kBits | end; }
   // -1: none is left
   int take(bool first) {
     std::uint64_t at = word.load(), begin = 0, end = 0;
     do {
-      begin = at >> kBits & kMost, end = at & kMost;
+      begin = at >> kBits, end = at & kMost;
       if (begin >= end) return -1;
     } while (!word.compare_exchange_weak(at, first ? at + (1u << kBits) : at - 1));
     return int(first ? begin : end - 1);
@@ -112,12 +111,11 @@ struct Workers::Crew {
   void run() {
     const int pieces = (count + piece - 1) / piece, all = int(shares.size());
     failed = -1, error = nullptr, done = 0;
-    const std::uint64_t number = loop.load() + 1;
     for (int i = 0; i < all; ++i) {
       const auto begins = [&](int thread) { return std::uint64_t(std::int64_t(pieces) * thread / all); };
-      shares[std::size_t(i)].set(number, begins(i), begins(i + 1));
+      shares[std::size_t(i)].set(begins(i), begins(i + 1));
     }
-    loop = number;
+    ++loop;
     if (asleep > 0) wake();
     work(0);
     for (int i = 0; done.load(std::memory_order_acquire) < pieces; ++i)
@@ -127,7 +125,11 @@ struct Workers::Crew {
 
 // Threads are let go, and each holds what it works on: nobody waits for those that a forked process lacks.
 Workers::Workers(int threads) : crew_(std::make_shared<Crew>(std::max(1, threads))) {
-  for (int i = 1; i < threads; ++i) std::thread([crew = crew_, i] { crew->serve(i); }).detach();
+  try {
+    for (int i = 1; i < threads; ++i) std::thread([crew = crew_, i] { crew->serve(i); }).detach();
+  } catch (const std::system_error&) {
+    // where no more can be had, the others do what these would
+  }
 }
 
 Workers::~Workers() {
@@ -144,7 +146,7 @@ void Workers::share(int count, int piece, Call call, const void* act) {
   if (count <= piece || it.shares.size() == 1 || !it.busy.compare_exchange_strong(free, true))
     return call(act, 0, count);
   it.call = call, it.act = act, it.count = count;
-  it.piece = std::max(piece, int(count / Share::kMost) + 1);
+  it.piece = piece * (1 + count / piece / int(Share::kMost));  // still a multiple
   it.run();
   const std::exception_ptr error = std::move(it.error);
   it.busy = false;

@@ -18,9 +18,9 @@ class Workers {
   int threads() const;
 
   /// act(begin, end) for all of 0 .. count-1, in pieces that begin at multiples of `piece`, at once and in
-  /// any order. What one call writes no other may read or write; then the result does not hang on the number
-  /// of threads. From within a loop, or while another caller's is under way: one call for all of it. What a
-  /// call throws is thrown, that of the first piece.
+  /// any order. What one call writes no other may read, or write otherwise; then the result does not hang on
+  /// the number of threads. From within a loop, or while another caller's is under way: one call for all of
+  /// it. What a call throws is thrown, that of the first piece, once the others are done.
   template <class Act>
   void each(int count, int piece, const Act& act) {
     const auto call = [](const void* its, int begin, int end) {

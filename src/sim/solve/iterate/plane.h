@@ -86,6 +86,7 @@ class PlaneIterative final : public Iterative<2> {
   template <class Act>
   void by_colour(const Act& act);
   plane::StepConstants constants_from(int batch) const;
+  void reserve_seen();
   void apply_warm_start();
   void iterate_all();
   int iterate_active();

@@ -90,7 +90,7 @@ void PlaneIterative::build_batches(const State<D>& state, bool known) {
   // in the order of memory
   calmest_ = 1e300;
   batches_.resize(end / kLanes), projections_.resize(end / kLanes);
-  slow_.reserve(std::size_t(end)), fast_.reserve(std::size_t(end));
+  slow_.reserve(std::size_t(end)), fast_.reserve(std::size_t(end)), reserve_seen();
   for (int slot = 0; slot < end; ++slot) {
     // pairs and contacts are far apart in memory: ask for those of later lanes
     if (slot + 2 * kAhead < end && slots_[slot + 2 * kAhead] >= 0) {

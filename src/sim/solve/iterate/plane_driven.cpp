@@ -25,7 +25,8 @@ void PlaneIterative::move_driven(StepPart<D> part) {
     const DrivenMotion<D>& to = driven_[i] = drives_.at(i, part.t + part.h);
     const DrivenMotion<D> from = jumps(part.h) ? to : drives_.at(i, part.t);
     const Motion o{from.at.v[0], from.at.v[1], from.at.w[0], 0}, v{to.at.v[0], to.at.v[1], to.at.w[0], 0};
-    old_[body] = o, moving_[body] = v;
+    // no zeros below zero: threads write what does not move as it was
+    old_[body] = o, moving_[body] = {v.x + 0.0, v.y + 0.0, v.w + 0.0, 0};
     dv_[body] = {v.x - o.x, v.y - o.y, v.w - o.w, 0};
     dx_[body] = {to.at.x[0] - poses_[body].x, to.at.x[1] - poses_[body].y, to.turn[0] - turns_[body], 0};
     const Motion& gain = dv_[body];

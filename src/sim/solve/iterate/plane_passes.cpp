@@ -34,9 +34,15 @@ plane::StepConstants PlaneIterative::constants_from(int batch) const {
   return its;
 }
 
+// room for what a warm start may find
+void PlaneIterative::reserve_seen() {
+  const std::size_t lanes = kLanes * (workers() ? std::size_t(kPlaneBatchPiece) : batches_.size());
+  const std::size_t pieces = workers() ? batches_.size() / kPlaneBatchPiece + begin_.size() + 1 : 1;
+  if (seen_.size() < pieces) seen_.resize(pieces);
+  for (Seen& seen : seen_) seen.slow.reserve(lanes), seen.fast.reserve(lanes);
+}
+
 void PlaneIterative::apply_warm_start() {
-  const std::size_t most = batches_.size() / kPlaneBatchPiece + begin_.size() + 1;
-  if (seen_.size() < most) seen_.resize(most);
   for (Seen& seen : seen_) seen.deep = false, seen.slow.clear(), seen.fast.clear();
   by_colour([&](int begin, int end, int number) {
     Seen& seen = seen_[std::size_t(number)];

@@ -173,7 +173,9 @@ void SpaceIterative::prepare(const State<D>& state, double t, double h) {
       const BodyMotion<D> then = drives_.at(i, t + h).at;
       stances_[body].v = then.v, stances_[body].w = then.w;
     }
-    moving_[body].v = stances_[body].v, moving_[body].w = stances_[body].w;
+    // no zeros below zero (sim/solve/iterate/space_batches.cpp)
+    moving_[body].v = stances_[body].v + Vec<D>::Zero(),
+    moving_[body].w = stances_[body].w + AngularVec<D>::Zero();
     farther_[body] = farther(i, t, h);
     if (!too_fast()) continue;
     // at most twice as fast as the matter that strikes it, and then against what lies beside it

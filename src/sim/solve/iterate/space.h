@@ -246,7 +246,7 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<char> inactive_, inactive_then_, points_;
   std::vector<ContactCandidate<D>> gaps_;
   std::vector<ContactConstraint> touches_;  // ascending by key
-  SpaceBatches batches_{workers()};         // of them, those that are iterated
+  SpaceBatches batches_{model_.workers};    // of them, those that are iterated
   Settling settling_;
   std::vector<std::pair<int, int>> exhausted_;  // islands and their touches
   std::vector<Found> found_;

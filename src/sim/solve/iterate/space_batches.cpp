@@ -137,7 +137,8 @@ OBSCURA_INLINE void respond_all(std::span<const SpaceBatches::Batch> batches,
   }
 }
 
-// those from `begin` on before `end`; walls and what does not move are written as they were
+// Those from `begin` on before `end`. Walls and what does not move are written as they were, also by several
+// threads at once: their velocities have no zero below zero that adding nothing would change.
 // kSome: of active bodies alone, of the batches `open`; each says which of its lanes were on and have changed
 template <class V, bool kSome>
 OBSCURA_INLINE void iterate_all(std::vector<SpaceBatches::Batch>& batches,
@@ -433,7 +434,7 @@ void SpaceBatches::build(std::span<const ContactConstraint<3>> contacts, std::sp
                                  [&](int i) { return !contacts[std::size_t(i)].surface().isZero(0); });
   belts_.assign(belts ? rows_.size() : 0, Belt{});
   const double* const numbers = bodies.data()->v.data();
-  each(workers_, int(batches_.size()), kBatchPiece, [&](int begin, int end) {
+  each(workers_.get(), int(batches_.size()), kBatchPiece, [&](int begin, int end) {
     const auto these = std::span(batches_).subspan(std::size_t(begin), std::size_t(end - begin));
     for (Batch& g : these) fill(g, contacts, which, int(bodies.size()) - 1);
     four_lanes ? respond_wide(these, rows_, numbers) : respond_all<V2>(these, rows_, numbers);
@@ -485,7 +486,7 @@ void SpaceBatches::load(std::span<const ContactConstraint<3>> contacts) {
 }
 
 void SpaceBatches::store(std::span<ContactConstraint<3>> contacts) const {
-  each(workers_, int(rows_.size()), kLanes * kBatchPiece, [&](int begin, int end) {
+  each(workers_.get(), int(rows_.size()), kLanes * kBatchPiece, [&](int begin, int end) {
     for (int at = begin; at < end; ++at) {
       const Row& r = rows_[std::size_t(at)];
       for (int lane = 0; lane < kLanes; ++lane) {
@@ -528,7 +529,7 @@ void SpaceBatches::by_level(std::span<const int> begins, bool back, const Act& a
   for (int i = 0; i < levels; ++i) {
     const auto level = std::size_t(back ? levels - 1 - i : i);
     const int first = begins[level];
-    each(workers_, begins[level + 1] - first, kBatchPiece,
+    each(workers_.get(), begins[level + 1] - first, kBatchPiece,
          [&](int begin, int end) { act(first + begin, first + end); });
   }
 }

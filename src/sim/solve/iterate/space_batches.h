@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/constraint/response.h"
@@ -56,9 +58,8 @@ class SpaceBatches {
  public:
   static constexpr int kLanes = 4;
 
-  /// Those of a level (find_pairs()) are shared by the threads. Keeps them by reference; null: there are
-  /// none.
-  explicit SpaceBatches(Workers* workers) : workers_(workers) {}
+  /// The pairs of a level (find_pairs()) are shared by the workers; null: there are none.
+  explicit SpaceBatches(std::shared_ptr<Workers> workers) : workers_(std::move(workers)) {}
 
   /// Lays out the contacts `which`, ascending, of `contacts`, in which those of a pair follow each other.
   void build(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
@@ -126,7 +127,7 @@ class SpaceBatches {
   template <class Act>
   void by_level(std::span<const int> begins, bool back, const Act& act) const;
 
-  Workers* workers_;
+  std::shared_ptr<Workers> workers_;
   std::vector<Pair> pairs_, sorted_;
   std::vector<int> begin_;   // of each level and number of contacts, among the sorted
   std::vector<int> levels_;  // of each body: that of its next pair
