@@ -85,6 +85,8 @@ class PlaneIterative final : public Iterative<2> {
   void first_guess(State<D>& state);
   template <class Act>
   void by_colour(const Act& act);
+  template <class Act>
+  void by_colour(std::span<const int> batches, const Act& act);
   plane::StepConstants constants_from(int batch) const;
   void reserve_seen();
   void apply_warm_start();

@@ -301,13 +301,9 @@ inline unsigned char active_lanes(const ContactBatch& g, const unsigned char* bo
 template <class V, bool kLast, bool kKeep, bool kSome = false>
 OBSCURA_INLINE int iterate_all(ContactBatch* batches, int count, const Pose* poses, Motion* v,
                                const StepConstants& pace, Contact<2>* contacts,
-                               ActiveBodies* active = nullptr) {
+                               ActiveBodies* active = nullptr, [[maybe_unused]] const int* listed = nullptr) {
   const V per_h = V{} + 1 / pace.h, none{};
   [[maybe_unused]] int pairs = 0;
-  [[maybe_unused]] const int* listed = nullptr;
-  if constexpr (kSome) {
-    if (!active->groups.empty()) listed = active->groups.data(), count = int(active->groups.size());
-  }
   for (int number = 0; number < count; ++number) {
     ContactBatch* const g = batches + (listed ? listed[number] : number);
     if (!g->used) continue;
@@ -358,8 +354,7 @@ OBSCURA_INLINE int iterate_all(ContactBatch* batches, int count, const Pose* pos
         const V wrong = larger<V>(wrong0, wrong1) * load<V>(g->per_width + lane);
         for (int k = 0; k < Of<V>::lanes; ++k) {
           if (!(lanes >> (lane + k) & 1) || !(wrong[k] > active->settled)) continue;
-          active->bodies[g->a[lane + k]] |= ActiveBodies::kNext,
-              active->bodies[g->b[lane + k]] |= ActiveBodies::kNext;
+          active->next[g->a[lane + k]] = active->next[g->b[lane + k]] = 1;
         }
       }
       solve_normals<V>(two, r0, r1, target0, target1, l0, l1);
@@ -479,9 +474,9 @@ OBSCURA_WIDE double closing_rate_wide(const ContactBatch* s, int n, const Pose* 
 OBSCURA_WIDE void iterate_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
   iterate_all<V4, false, false>(s, n, at, v, pace, nullptr);
 }
-OBSCURA_WIDE int iterate_some_wide(ContactBatch* s, int n, const Pose* at, Motion* v,
+OBSCURA_WIDE int iterate_some_wide(ContactBatch* s, const int* listed, int n, const Pose* at, Motion* v,
                                    const StepConstants& pace, ActiveBodies& active) {
-  return iterate_all<V4, false, false, true>(s, n, at, v, pace, nullptr, &active);
+  return iterate_all<V4, false, false, true>(s, n, at, v, pace, nullptr, &active, listed);
 }
 OBSCURA_WIDE void iterate_last_wide(ContactBatch* s, int n, const Pose* at, Motion* v,
                                     const StepConstants& pace, Contact<2>* contacts) {
@@ -568,22 +563,25 @@ void iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConsta
   if (four_lanes) return iterate_wide(s, n, at, v, pace);
   iterate_all<V2, false, false>(s, n, at, v, pace, nullptr);
 }
-int iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
+int iterate(ContactBatch* s, const int* listed, int n, const Pose* at, Motion* v, const StepConstants& pace,
             ActiveBodies& active) {
-  return four_lanes ? iterate_some_wide(s, n, at, v, pace, active)
-                    : iterate_all<V2, false, false, true>(s, n, at, v, pace, nullptr, &active);
+  return four_lanes ? iterate_some_wide(s, listed, n, at, v, pace, active)
+                    : iterate_all<V2, false, false, true>(s, n, at, v, pace, nullptr, &active, listed);
 }
 void activate_next(ActiveBodies& active) {
-  // walls are never active
-  active.bodies.back() = 0;
-  const auto next = [](unsigned char& body) {
-    body = static_cast<unsigned char>((body & ActiveBodies::kNever) |
-                                      (body & ActiveBodies::kNext ? ActiveBodies::kNow : 0));
+  active.next.back() = 0;  // walls are never active
+  unsigned char* const __restrict flags = active.bodies.data();
+  unsigned char* const __restrict noted = active.next.data();
+  static_assert(ActiveBodies::kNow == 1, "as what is noted");
+  const auto next = [&](std::size_t body) {
+    flags[body] = static_cast<unsigned char>((flags[body] & ActiveBodies::kNever) | noted[body]);
+    noted[body] = 0;
   };
   if (active.groups.empty()) {
-    for (unsigned char& body : active.bodies) next(body);
+    const std::size_t count = active.bodies.size();
+    for (std::size_t body = 0; body < count; ++body) next(body);
   } else {
-    for (const int body : active.listed) next(active.bodies[std::size_t(body)]);
+    for (const int body : active.listed) next(std::size_t(body));
   }
 }
 void follow(ContactBatch* s, int n, const Pose* at, Motion* v, LaneImpulses* before, LaneImpulses* directions,

@@ -122,17 +122,18 @@ void iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, con
 /// Bodies whose pairs need more iterations: those of a pair whose last correction exceeded `settled` widths a
 /// second. Bodies on joints are excluded by kNever.
 struct ActiveBodies {
-  static constexpr unsigned char kNow = 1, kNext = 2, kNever = 4;
+  static constexpr unsigned char kNow = 1, kNever = 2;
   double settled = 0;                 // 1/s
   std::vector<unsigned char> bodies;  // flags; one more for walls
+  std::vector<unsigned char> next;    // of these, what an iteration notes; apart, for threads read the flags
   // where not empty: the groups that alone are looked at, and all bodies of theirs that may be active
   std::vector<int> groups, listed;
 };
 
-/// One iteration of the pairs of such bodies alone. Notes what the next is to look at; returns the number of
-/// pairs.
-int iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
-            ActiveBodies& active);
+/// One iteration of the pairs of such bodies alone, in `count` groups, or in so many of the numbers `listed`.
+/// Notes what the next is to look at; returns the number of pairs.
+int iterate(ContactBatch* batches, const int* listed, int count, const Pose* poses, Motion* v,
+            const StepConstants& pace, ActiveBodies& active);
 /// After one over all: the bodies that it has noted are active.
 void activate_next(ActiveBodies& active);
 /// Impulses of four pairs, as ContactBatch has them.

@@ -28,6 +28,21 @@ void PlaneIterative::by_colour(const Act& act) {
   }
 }
 
+// act(begin, end) for all of these batches, which ascend
+template <class Act>
+void PlaneIterative::by_colour(std::span<const int> batches, const Act& act) {
+  if (!workers()) return act(0, int(batches.size()));
+  const int colours = int(begin_.size()) - 1;
+  int first = 0;
+  for (int colour = 0; colour < colours; ++colour) {
+    const auto end =
+        std::lower_bound(batches.begin() + first, batches.end(), begin_[std::size_t(colour) + 1] / kLanes);
+    const int last = int(end - batches.begin()), piece = colour + 1 < colours ? kPlaneBatchPiece : last + 1;
+    each(workers(), last - first, piece, [&](int from, int to) { act(first + from, first + to); });
+    first = last;
+  }
+}
+
 plane::StepConstants PlaneIterative::constants_from(int batch) const {
   plane::StepConstants its = constants_;
   if (its.least) its.least += batch;
@@ -69,11 +84,18 @@ void PlaneIterative::iterate_all() {
 // how many pairs these were
 int PlaneIterative::iterate_active() {
   std::atomic<int> pairs = 0;
-  const auto some = [&](int begin, int end, int) {
-    pairs += plane::iterate(batches_.data() + begin, end - begin, poses_.data(), moving_.data(),
-                            constants_from(begin), active_bodies_);
-  };
-  active_bodies_.groups.empty() ? by_colour(some) : some(0, int(batches_.size()), 0);
+  const std::vector<int>& groups = active_bodies_.groups;
+  if (groups.empty()) {
+    by_colour([&](int begin, int end, int) {
+      pairs += plane::iterate(batches_.data() + begin, nullptr, end - begin, poses_.data(), moving_.data(),
+                              constants_from(begin), active_bodies_);
+    });
+  } else {
+    by_colour(groups, [&](int begin, int end) {
+      pairs += plane::iterate(batches_.data(), groups.data() + begin, end - begin, poses_.data(),
+                              moving_.data(), constants_, active_bodies_);
+    });
+  }
   plane::activate_next(active_bodies_);
   return pairs;
 }

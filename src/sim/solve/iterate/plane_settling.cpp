@@ -34,7 +34,7 @@ void PlaneIterative::settle_all() {
   active_bodies_.settled = settled_rate(closing_rates_.most), active_bodies_.groups.clear();
   const auto activate = [&] {
     active_bodies_.bodies.assign(turns_.size() + 1, plane::ActiveBodies::kNow);
-    active_bodies_.bodies.back() = 0;
+    active_bodies_.bodies.back() = 0, active_bodies_.next.assign(turns_.size() + 1, 0);
     for (const int body : joints_.bodies()) active_bodies_.bodies[body] = plane::ActiveBodies::kNever;
   };
   activate();
