@@ -23,9 +23,9 @@ void relax() {
 #endif
 }
 
-// The pieces of a thread that nobody has begun, from `begin` on before `end`, in one word, so that each is
-// taken once. The thread itself takes the first, so that it comes to the same memory in loop after loop; one
-// that has nothing left of its own takes the last.
+// The pieces of one thread that no thread has begun: from `begin` on, before `end`. Both are in one word, so
+// that each piece is taken once. The thread itself takes the first piece, so that it uses the same memory in
+// each loop. A thread whose own pieces are all taken takes the last piece of another.
 struct Share {
   static constexpr int kBits = 20;
   static constexpr std::uint64_t kMost = (1u << kBits) - 1;
@@ -63,8 +63,8 @@ struct Workers::Crew {
 
   explicit Crew(int size) : shares(std::size_t(size)) {}
 
-  // Does pieces of a thread's own share, then of the others', until none is left. Whether there were any.
-  bool work(int own) {
+  // does pieces of a thread's own share, then of the others', until none is left
+  void work(int own) {
     int did = 0;
     const int all = int(shares.size());
     for (int i = 0; i < all; ++i) {
@@ -72,7 +72,6 @@ struct Workers::Crew {
       for (int at = share.take(i == 0); at >= 0; at = share.take(i == 0)) perform(at), ++did;
     }
     if (did > 0) done.fetch_add(did, std::memory_order_release);
-    return did > 0;
   }
 
   void perform(int at) {
@@ -123,12 +122,13 @@ struct Workers::Crew {
   }
 };
 
-// Threads are let go, and each holds what it works on: nobody waits for those that a forked process lacks.
+// The threads are detached, and each keeps the crew alive. So the destructor does not wait for them: in a
+// forked process they do not exist.
 Workers::Workers(int threads) : crew_(std::make_shared<Crew>(std::max(1, threads))) {
   try {
     for (int i = 1; i < threads; ++i) std::thread([crew = crew_, i] { crew->serve(i); }).detach();
   } catch (const std::system_error&) {
-    // where no more can be had, the others do what these would
+    // the system has no more threads: those that began do the pieces of the others
   }
 }
 

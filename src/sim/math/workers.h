@@ -4,23 +4,25 @@
 
 namespace obscura::sim {
 
-/// Threads that share the loops of one caller. They end with this and sleep while there is nothing to do. A
-/// caller never waits for a thread that has not come: it does itself what nobody has begun, so a loop ends in
-/// a forked process too, where the threads are missing.
+/// Threads that share the loops of one caller. They sleep while there is no loop, and end when this is
+/// destroyed. The caller does all pieces that no thread has begun, so it never waits for a thread that is
+/// late. In a forked process, which has no such threads, it does them all.
 class Workers {
  public:
-  /// `threads` of them, the caller among them; one at least.
+  /// `threads` threads, the caller included; at least one. If the system refuses some, those that began do
+  /// all.
   explicit Workers(int threads);
   ~Workers();
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
 
+  /// As many as were asked for.
   int threads() const;
 
   /// act(begin, end) for all of 0 .. count-1, in pieces that begin at multiples of `piece`, at once and in
-  /// any order. What one call writes no other may read, or write otherwise; then the result does not hang on
-  /// the number of threads. From within a loop, or while another caller's is under way: one call for all of
-  /// it. What a call throws is thrown, that of the first piece, once the others are done.
+  /// any order. What one call changes, no other call may read or change; then the result does not depend on
+  /// the number of threads. Within a loop, or while the loop of another caller runs, it is one call for all.
+  /// If calls throw, the exception of the first piece is thrown after all pieces are done.
   template <class Act>
   void each(int count, int piece, const Act& act) {
     const auto call = [](const void* its, int begin, int end) {
@@ -38,7 +40,7 @@ class Workers {
   std::shared_ptr<Crew> crew_;
 };
 
-/// The same by threads that there may be none of: then one call for all.
+/// The same where `workers` may be null: then one call for all.
 template <class Act>
 void each(Workers* workers, int count, int piece, const Act& act) {
   if (workers) return workers->each(count, piece, act);

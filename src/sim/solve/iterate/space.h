@@ -18,6 +18,7 @@
 #include "sim/solve/iterate/impact_queue.h"
 #include "sim/solve/iterate/instant_impact.h"
 #include "sim/solve/iterate/iterative.h"
+#include "sim/solve/iterate/pair_levels.h"
 #include "sim/solve/iterate/space_batches.h"
 
 namespace obscura::sim {
@@ -264,13 +265,14 @@ class SpaceIterative final : public Iterative<3> {
   Islands islands_;
   std::vector<OverlappingTouch> overlaps_;
   std::vector<OverlapPair> overlap_pairs_, sorted_overlaps_;
-  std::vector<int> overlap_levels_, overlap_begins_;
-  std::vector<char> known_force_;                   // of each touch: whether the state has a force for it
-  std::vector<double> before_, gained_, returned_;  // of each island's impacts, J
-  std::vector<double> given_;                       // by the contacts of each island, J
-  bool struck_ = false;                             // whether any body had an impact in this step
-  std::vector<double> when_;                        // bodies: s, their last impact in it; or -1
-  std::vector<Flown> flown_;                        // after it, or as the step began
+  PairLevels overlap_levels_;
+  std::vector<int> overlap_begins_, overlap_places_;  // of each level
+  std::vector<char> known_force_;                     // of each touch: whether the state has a force for it
+  std::vector<double> before_, gained_, returned_;    // of each island's impacts, J
+  std::vector<double> given_;                         // by the contacts of each island, J
+  bool struck_ = false;                               // whether any body had an impact in this step
+  std::vector<double> when_;                          // bodies: s, their last impact in it; or -1
+  std::vector<Flown> flown_;                          // after it, or as the step began
   mutable std::vector<Course> courses_;
   std::vector<Fastest> fastest_;
   std::vector<AngularVec<D>> twist_;  // bodies: what the step adds to angular momentum without contacts

@@ -374,12 +374,10 @@ void Settling::activate_next() {
   }
 }
 
-// Pairs, and of each its level: one more than that of the last pair before it that has a body of its own
-// which moves. Level by level is the order in which they come, for all that it changes.
+// Pairs, by their levels.
 void SpaceBatches::find_pairs(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
                               std::span<const PointBody<3>> bodies) {
-  pairs_.clear(), levels_.assign(bodies.size(), 0);
-  int deepest = 0;
+  pairs_.clear(), levels_.begin(bodies.size());
   for (int first = 0, end = 0; first < int(which.size()); first = end) {
     const ContactConstraint<3>& contact = contacts[std::size_t(which[std::size_t(first)])];
     const auto same = [&](int i) {
@@ -387,19 +385,16 @@ void SpaceBatches::find_pairs(std::span<const ContactConstraint<3>> contacts, st
       return other.a == contact.a && other.b == contact.b;
     };
     for (end = first + 1; end < int(which.size()) && same(end);) ++end;
-    const auto a = std::size_t(contact.a), b = std::size_t(contact.b);
-    const int level = std::max(levels_[a], levels_[b]);
+    const auto moves = [&](int body) { return bodies[std::size_t(body)].inverse_mass > 0; };
+    const int level = levels_.next(contact.a, moves(contact.a), contact.b, moves(contact.b));
     pairs_.push_back({contact.a, contact.b, first, end - first, level});
-    if (bodies[a].inverse_mass > 0) levels_[a] = level + 1;
-    if (bodies[b].inverse_mass > 0) levels_[b] = level + 1;
-    deepest = std::max(deepest, level);
   }
 
   // by level, and in each by how many contacts they have, the most first
   const auto place = [](const Pair& pair) {
     return std::size_t(pair.level * kMostSorted + kMostSorted - std::min(pair.count, kMostSorted));
   };
-  begin_.assign(std::size_t((deepest + 1) * kMostSorted + 1), 0);
+  begin_.assign(std::size_t(std::max(1, levels_.count()) * kMostSorted + 1), 0);
   for (const Pair& pair : pairs_) ++begin_[place(pair) + 1];
   for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
   sorted_.resize(pairs_.size());

@@ -10,6 +10,7 @@
 #include "sim/math/islands.h"
 #include "sim/math/workers.h"
 #include "sim/solve/iterate/contact_constraint.h"
+#include "sim/solve/iterate/pair_levels.h"
 
 namespace obscura::sim {
 
@@ -129,8 +130,8 @@ class SpaceBatches {
 
   std::shared_ptr<Workers> workers_;
   std::vector<Pair> pairs_, sorted_;
-  std::vector<int> begin_;   // of each level and number of contacts, among the sorted
-  std::vector<int> levels_;  // of each body: that of its next pair
+  std::vector<int> begin_;  // of each level and number of contacts, among the sorted
+  PairLevels levels_;
   std::vector<Batch> batches_;
   std::vector<int> level_begins_, open_begins_;  // among batches_ and open_, and where they end
   std::vector<Row> rows_;

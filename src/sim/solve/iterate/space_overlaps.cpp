@@ -51,11 +51,9 @@ double SpaceIterative::find_overlaps(const State<D>& state, double h) {
   return most;
 }
 
-// The pairs of these, by level: one more than that of the last pair before that has a body of its own which
-// moves.
+// the pairs of these, by their levels
 void SpaceIterative::sort_overlaps() {
-  overlap_pairs_.clear(), overlap_levels_.assign(moving_.size(), 0);
-  int deepest = 0;
+  overlap_pairs_.clear(), overlap_levels_.begin(moving_.size());
   for (int first = 0, end = 0; first < int(overlaps_.size()); first = end) {
     const ContactConstraint& touch = touches_[overlaps_[first].touch];
     const auto same = [&](int i) {
@@ -63,20 +61,18 @@ void SpaceIterative::sort_overlaps() {
       return other.a == touch.a && other.b == touch.b;
     };
     for (end = first + 1; end < int(overlaps_.size()) && same(end);) ++end;
-    const int level = std::max(overlap_levels_[touch.a], overlap_levels_[touch.b]);
+    const auto moves = [&](int body) { return moving_[body].inverse_mass > 0; };
+    const int level = overlap_levels_.next(touch.a, moves(touch.a), touch.b, moves(touch.b));
     overlap_pairs_.push_back({level, first, end});
-    for (const int body : {touch.a, touch.b})
-      if (moving_[body].inverse_mass > 0) overlap_levels_[body] = level + 1;
-    deepest = std::max(deepest, level);
   }
   // counted, and each to the next place of its level
-  overlap_begins_.assign(std::size_t(deepest) + 2, 0);
+  overlap_begins_.assign(std::size_t(overlap_levels_.count()) + 1, 0);
   for (const OverlapPair& pair : overlap_pairs_) ++overlap_begins_[std::size_t(pair.level) + 1];
   for (std::size_t i = 1; i < overlap_begins_.size(); ++i) overlap_begins_[i] += overlap_begins_[i - 1];
-  overlap_levels_.assign(overlap_begins_.begin(), overlap_begins_.end() - 1);
+  overlap_places_.assign(overlap_begins_.begin(), overlap_begins_.end() - 1);
   sorted_overlaps_.resize(overlap_pairs_.size());
   for (const OverlapPair& pair : overlap_pairs_)
-    sorted_overlaps_[std::size_t(overlap_levels_[std::size_t(pair.level)]++)] = pair;
+    sorted_overlaps_[std::size_t(overlap_places_[std::size_t(pair.level)]++)] = pair;
   overlap_pairs_.swap(sorted_overlaps_);
 }
 
