@@ -358,13 +358,22 @@ void gear(const Node& top, const Fields& fields, const std::string& name, sim::W
   for (std::size_t k = 0; k < 2; ++k) {
     const std::string& wanted = joints->list()[k].text();
     const auto found = std::ranges::find(world.model.joints, wanted, &sim::Joint<D>::name);
+    const auto cannot_take = [&] {
+      complaints.add(
+          joints->list()[k].place,
+          fmt::format("'{}' has no angle and no way that a gear could take: expected a {} or a slider",
+                      wanted, D == 2 ? "pin" : "hinge"));
+    };
     if (found == world.model.joints.end()) {
-      // what is wrong there is told
       const Node* tables = top.find("joint");
-      const auto called = [&](const Node& it) {
-        const Node* its = it.find("name");
-        return its && its->is_text() && its->text() == wanted;
+      const auto is = [](const Node& it, std::string_view key, std::string_view text) {
+        const Node* its = it.find(key);
+        return its && its->is_text() && its->text() == text;
       };
+      const auto called = [&](const Node& it) { return is(it, "name", wanted); };
+      const auto gear = [&](const Node& it) { return called(it) && is(it, "type", "gear"); };
+      if (tables && std::ranges::any_of(tables->list(), gear)) return cannot_take();
+      // what is wrong there is told
       if (tables && std::ranges::any_of(tables->list(), called)) return;
       std::vector<std::string_view> known;
       for (const sim::Joint<D>& joint : world.model.joints) known.push_back(joint.name);
@@ -372,13 +381,7 @@ void gear(const Node& top, const Fields& fields, const std::string& name, sim::W
                      fmt::format("no joint is called '{}'{}", wanted, did_you_mean(wanted, known)));
       return;
     }
-    if (!sim::has_free_row(*found)) {
-      complaints.add(
-          joints->list()[k].place,
-          fmt::format("'{}' has no angle and no way that a gear could take: expected a {} or a slider",
-                      wanted, D == 2 ? "pin" : "hinge"));
-      return;
-    }
+    if (!sim::has_free_row(*found)) return cannot_take();
     if (found->later) {
       complaints.add(joints->list()[k].place,
                      fmt::format("'{}' is not joined at the start, and a gear needs its joints", wanted));

@@ -226,12 +226,4 @@ struct alignas(D == 3 ? 32 : 8) PointBody {
   }
 };
 
-/// An impulse (N s) on a at an arm from its centre, and the opposite one on b.
-template <int D>
-void apply(const Vec<D>& impulse, PointBody<D>& a, const Vec<D>& arm_a, PointBody<D>& b,
-           const Vec<D>& arm_b) {
-  a.v += a.inverse_mass * impulse, a.w += a.inverse_inertia * moment<D>(arm_a, impulse);
-  b.v -= b.inverse_mass * impulse, b.w -= b.inverse_inertia * moment<D>(arm_b, impulse);
-}
-
 }  // namespace obscura::sim

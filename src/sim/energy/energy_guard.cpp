@@ -121,8 +121,11 @@ bool EnergyGuard<D>::risen(const State<D>& state) {
 template <int D>
 void EnergyGuard<D>::touch(int a, int b) {
   const bool stays = b < 0 || weights_[b].mass == 0;
-  carried_[a] |= char(b >= 0 && model_.bodies[std::size_t(b)].carries());
-  if (b >= 0) carried_[b] |= char(model_.bodies[std::size_t(a)].carries());
+  // a belt carries what lies on it, and the body that has it
+  const bool carries =
+      model_.bodies[std::size_t(a)].carries() || (b >= 0 && model_.bodies[std::size_t(b)].carries());
+  carried_[a] |= char(carries);
+  if (b >= 0) carried_[b] |= char(carries);
   if (weights_[a].mass == 0) {
     if (!stays) touched_[b] = rooted_[b] = 1;
     return;

@@ -97,6 +97,7 @@ class Program {
 
  private:
   friend class Evaluation;
+  friend class RangeEvaluation;
 
   // operands: below slots_ a variable of each body, from there on a register
   struct Instruction {

@@ -12,11 +12,18 @@
 #include "sim/math/elementary.h"
 #include "sim/math/lie_step.h"
 #include "sim/math/limits.h"
+#include "sim/math/workers.h"
 #include "sim/model/body_spin.h"
 #include "sim/motion/free_motion.h"
 #include "sim/motion/stability.h"
 
 namespace obscura::sim {
+
+namespace {
+
+constexpr int kTurningPiece = 64;  // bodies that turn, of which one thread takes so many at a time
+
+}  // namespace
 
 template <int D>
 ForwardDynamics<D>::ForwardDynamics(const Model<D>& model, const std::vector<Path<D>>& paths)
@@ -299,10 +306,12 @@ void ForwardDynamics<D>::piece(Integrate* integrate, State<D>& state, double t, 
     state.x[bodies_[i]] += Eigen::Map<const Vec<D>>(d_.data() + D * i);
     state.v[bodies_[i]] = Eigen::Map<const Vec<D>>(v_.data() + D * i);
   }
-  for (int i = 0; i < turning_; ++i) {
-    const int k = turning(state, bodies_[still + i]), at = D * n + kAngular<D> * i;
-    store_spin<D>(state, k, turn_[i], d_.data() + at, base_[i], v_.data() + at);
-  }
+  each(model_.workers.get(), turning_, kTurningPiece, [&](int first, int end) {
+    for (int i = first; i < end; ++i) {
+      const int k = turning(state, bodies_[still + i]), at = D * n + kAngular<D> * i;
+      store_spin<D>(state, k, turn_[i], d_.data() + at, base_[i], v_.data() + at);
+    }
+  });
   const std::size_t chains = std::size_t(chain_start()), joints = std::size_t(chains_.size());
   chains_.give(std::span<const double>(d_).subspan(chains, joints),
                std::span<const double>(v_).subspan(chains, joints), state);
@@ -403,7 +412,7 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
     stances_[i].x = x_[i] + Eigen::Map<const Vec<D>>(d.data() + D * i);
     stances_[i].v = Eigen::Map<const Vec<D>>(v.data() + D * i);
   }
-  for (int i = 0; i < turning_; ++i) {
+  const auto turn_one = [&](int i) {
     const int at = D * n + kAngular<D> * i;
     const AngularVec<D> by = Eigen::Map<const AngularVec<D>>(d.data() + at);
     const AngularVec<D> w =
@@ -416,7 +425,10 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
     Eigen::Map<AngularVec<D>>(d_rate.data() + at) = displacement_rate<D>(by, w);
     Eigen::Map<AngularVec<D>>(v_rate.data() + at) =
         gyroscopic_acceleration<D>(model_.bodies[bodies_[still + i]].inertia, w);
-  }
+  };
+  each(model_.workers.get(), turning_, kTurningPiece, [&](int first, int end) {
+    for (int i = first; i < end; ++i) turn_one(i);
+  });
   const std::size_t chains = std::size_t(chain_start()), joints = std::size_t(chains_.size());
   const int links = int(chains_.links().size());
   if (links > 0) chains_.stand(d.subspan(chains, joints), v.subspan(chains, joints)), chains_.clear_forces();

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "sim/math/expression.h"
+#include "sim/math/range_evaluation.h"
 #include "sim/model/model.h"
 #include "sim/model/script.h"
 
@@ -17,8 +19,8 @@ class Jumps {
   explicit Jumps(const Model<D>& model);
 
   /// Where to cut a step that goes from a fraction of it to another: shortly before the first jump between
-  /// them or, from there on, shortly after it; `to` where there is none. Two jumps within one step whose
-  /// effects cancel are not seen.
+  /// them or, from there on, shortly after it; `to` where there is none. Of thousands of jumps in a step, and
+  /// of two within half a piece (kJumpPiece), those whose effects cancel are not seen.
   double cut(std::int64_t step, double from, double to);
 
  private:
@@ -27,12 +29,20 @@ class Jumps {
     int slot;         // of the time
   };
 
-  void levels_at(TimeStamp at, std::vector<double>& levels);
+  double time_at(std::int64_t step, double fraction) const;
+  void levels_at(double t, std::vector<double>& levels);
+  bool differ(std::int64_t step, double low, double high);
+  bool stay(std::int64_t step, double low, double high);
+  bool find_first(std::int64_t step, double& low, double& high);
 
   Rational rate_;
+  std::int64_t looked_into_ = -1;  // the step
+  int looks_ = 0;                  // at parts of it that are left
   std::vector<Formula> formulas_;
   std::vector<Evaluation> evaluations_;
+  std::vector<RangeEvaluation> ranges_;
   std::vector<double> begun_, now_, uniform_;
+  std::vector<Range> uniform_range_;
 };
 
 }  // namespace obscura::sim

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "sim/math/exponential.h"
 #include "sim/solve/iterate/pieces.h"
@@ -26,6 +27,7 @@ constexpr int kFewestIterations = 4;     // of many
 constexpr int kTouchIterations = 20000;  // touches times iterations between
 constexpr int kTempering = 5;            // rounds
 constexpr double kRoundingGain = 1e-9;   // of its kinetic energy: what an island may win by rounding
+constexpr double kFar = -1e300;          // 1/s: no touch closes so
 
 }  // namespace
 
@@ -66,10 +68,7 @@ void SpaceIterative::update_sleep(StepPart<D> step) {
 // how fast those close that touch, or may within h s, in widths of the narrower body, 1/s
 SpaceIterative::ClosingRates SpaceIterative::closing_rates(double h) const {
   const int n = int(model_.bodies.size());
-  std::size_t near = 0;
-  double most = 0;
-  rates_.clear();
-  for (const ContactConstraint& touch : touches_) {
+  const auto closes_by = [&](const ContactConstraint& touch) {
     const Vec<D> u = slip(touch);
     double closes = -touch.n.dot(u);
     if (!(round_[touch.a] && (touch.b == n || round_[touch.b]))) {
@@ -81,9 +80,19 @@ SpaceIterative::ClosingRates SpaceIterative::closing_rates(double h) const {
     }
     // what is moved, as fast as it becomes within the step
     if (!quicker_.empty()) closes += quicker_[touch.a] + (touch.b < n ? quicker_[touch.b] : 0);
-    if (!((touch.gap - h * closes) * touch.per_width < kNearly)) continue;
+    return (touch.gap - h * closes) * touch.per_width < kNearly ? closes * touch.per_width : kFar;
+  };
+  closes_.resize(touches_.size());
+  each(workers(), int(touches_.size()), kTouchPiece, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) closes_[i] = closes_by(touches_[i]);
+  });
+  std::size_t near = 0;
+  double most = 0;
+  rates_.clear();
+  for (const double rate : closes_) {
+    if (rate == kFar) continue;
     ++near;
-    if (closes > 0) rates_.push_back(closes * touch.per_width), most = std::max(most, rates_.back());
+    if (rate > 0) rates_.push_back(rate), most = std::max(most, rate);
   }
   return {ruling_rate(rates_, near), most};
 }
@@ -283,13 +292,17 @@ void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
   const int count = int(touches_.size());
   known_force_.resize(touches_.size());
   each(workers(), count, kTouchPiece, [&](int begin, int end) { set_aims(begin, end, state, h); });
-  closing_.assign(model_.bodies.size() + 1, 0), all_.clear();
-  for (int i = 0; i < count; ++i) {
-    const ContactConstraint& touch = touches_[i];
-    all_.push_back(i);
+  closing_.assign(model_.bodies.size() + 1, 0), all_.resize(touches_.size());
+  std::iota(all_.begin(), all_.end(), 0);
+  for (const ContactConstraint& touch : touches_)
     if (touch.closing) closing_[touch.a] = closing_[touch.b] = 1;
-    if (known_force_[i]) push(touch, touch.normal_impulse * touch.n + touch.tangent_impulse);
-  }
+  batches_.sort(touches_, all_, moving_);
+  batches_.each_pair([&](int first, int end) {
+    for (int i = first; i < end; ++i) {
+      const ContactConstraint& touch = touches_[i];
+      if (known_force_[i]) push(touch, touch.normal_impulse * touch.n + touch.tangent_impulse);
+    }
+  });
 }
 
 // of touches from `begin` on before `end`
@@ -472,6 +485,13 @@ void SpaceIterative::place_bodies(StepPart<D> part) {
 
 // the forces of this substep; what sleeps keeps its own
 void SpaceIterative::report_contacts(State<D>& state, double h) const {
+  if (std::find(state.frozen.begin(), state.frozen.end(), 1) == state.frozen.end()) {
+    state.contacts.resize(touches_.size());
+    each(workers(), int(touches_.size()), kTouchPiece, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) state.contacts[i] = contact(touches_[i], h);
+    });
+    return;
+  }
   const auto asleep = [&](int body) { return body < 0 || inactive_[body]; };
   std::erase_if(state.contacts, [&](const Contact<D>& c) { return !asleep(c.key.a) || !asleep(c.key.b); });
   const std::size_t kept = state.contacts.size();

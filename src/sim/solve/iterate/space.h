@@ -121,6 +121,12 @@ class SpaceIterative final : public Iterative<3> {
     double response = 0;  // 1/kg
     double parted = 0;    // kg m: of unit time
   };
+  // what a contact of an island whose budget is spent gives its bodies over the substep
+  struct Bearing {
+    double gives = 0;    // J
+    int island = -1;     // none: it is of another
+    bool opens = false;  // and parts them, without having bounced
+  };
   // those of a pair, and the most that a round has changed, m
   struct OverlapPair {
     int level, first, end;
@@ -194,9 +200,12 @@ class SpaceIterative final : public Iterative<3> {
   void shed_gains();
   void keep_impulses(const State<D>& state);
   void add_impulses(State<D>& state) const;
-  // an impulse on a, and back on b
+  // an impulse on a, and back on b; what does not move may be another thread's too
   void push(const ContactConstraint& touch, const Vec<D>& impulse) {
-    apply(impulse, moving_[touch.a], touch.arm_a, moving_[touch.b], touch.arm_b);
+    const auto push_one = [](PointBody<D>& m, const Vec<D>& arm, const Vec<D>& its) {
+      if (m.inverse_mass > 0) m.v += m.inverse_mass * its, m.w += m.inverse_inertia * moment<D>(arm, its);
+    };
+    push_one(moving_[touch.a], touch.arm_a, impulse), push_one(moving_[touch.b], touch.arm_b, -impulse);
   }
   // how fast a's matter moves against b's
   Vec<D> slip(const ContactConstraint& touch) const {
@@ -234,8 +243,9 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<double> farther_;
   std::vector<double> width_;  // of bodies, m
   std::vector<char> round_;
-  std::vector<Contact<D>> impulses_;   // of the substeps before
-  mutable std::vector<double> rates_;  // 1/s, of the touches that close
+  std::vector<Contact<D>> impulses_;    // of the substeps before
+  mutable std::vector<double> closes_;  // 1/s, of each touch; kFar: it is not near,
+  mutable std::vector<double> rates_;   // and of those that close
 
   std::vector<BodyMotion<D>> stances_;
   std::vector<double> margin_,
@@ -269,6 +279,7 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<int> overlap_begins_, overlap_places_;  // of each level
   std::vector<char> known_force_;                     // of each touch: whether the state has a force for it
   std::vector<double> before_, gained_, returned_;    // of each island's impacts, J
+  std::vector<Bearing> bearings_;                     // of each touch
   std::vector<double> given_;                         // by the contacts of each island, J
   bool struck_ = false;                               // whether any body had an impact in this step
   std::vector<double> when_;                          // bodies: s, their last impact in it; or -1

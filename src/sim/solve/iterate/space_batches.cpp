@@ -318,21 +318,25 @@ void Settling::begin(std::span<const ContactConstraint<3>> contacts, std::span<c
   const auto counts = [&](int body) {
     return moving[std::size_t(body)].inverse_mass > 0 && !(flags[std::size_t(body)] & kNever);
   };
-  sets_.reset(n);
+  sets_.reset(n), pairs_.clear();
   for (const int i : which) {
     const ContactConstraint<3>& contact = contacts[std::size_t(i)];
-    if (counts(contact.a) && counts(contact.b)) sets_.join(contact.a, contact.b);
+    if (pairs_.empty() || pairs_.back().a != contact.a || pairs_.back().b != contact.b) {
+      if (counts(contact.a) && counts(contact.b)) sets_.join(contact.a, contact.b);
+      pairs_.push_back({contact.a, contact.b});
+    }
+    Pair& pair = pairs_.back();
+    ++pair.contacts, pair.rate = std::max(pair.rate, contact.rate);
   }
   islands.clear(), island_of.assign(moving.size(), -1);
-  for (const int i : which) {
-    const ContactConstraint<3>& contact = contacts[std::size_t(i)];
-    if ((flags[std::size_t(contact.a)] | flags[std::size_t(contact.b)]) & kNever) continue;
-    const int body = counts(contact.a) ? contact.a : contact.b;
+  for (const Pair& pair : pairs_) {
+    if ((flags[std::size_t(pair.a)] | flags[std::size_t(pair.b)]) & kNever) continue;
+    const int body = counts(pair.a) ? pair.a : pair.b;
     if (!counts(body)) continue;
     int& number = island_of[std::size_t(sets_.root(body))];
     if (number < 0) number = int(islands.size()), islands.emplace_back();
     Island& island = islands[std::size_t(number)];
-    ++island.contacts, island.rate = std::max(island.rate, contact.rate);
+    island.contacts += pair.contacts, island.rate = std::max(island.rate, pair.rate);
   }
   for (int i = 0; i < n; ++i) {
     if (const int number = island_of[std::size_t(sets_.root(i))]; number >= 0 && counts(i))
@@ -374,9 +378,8 @@ void Settling::activate_next() {
   }
 }
 
-// Pairs, by their levels.
-void SpaceBatches::find_pairs(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
-                              std::span<const PointBody<3>> bodies) {
+void SpaceBatches::sort(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
+                        std::span<const PointBody<3>> bodies) {
   pairs_.clear(), levels_.begin(bodies.size());
   for (int first = 0, end = 0; first < int(which.size()); first = end) {
     const ContactConstraint<3>& contact = contacts[std::size_t(which[std::size_t(first)])];
@@ -397,6 +400,9 @@ void SpaceBatches::find_pairs(std::span<const ContactConstraint<3>> contacts, st
   begin_.assign(std::size_t(std::max(1, levels_.count()) * kMostSorted + 1), 0);
   for (const Pair& pair : pairs_) ++begin_[place(pair) + 1];
   for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  pair_begins_.clear();
+  for (int level = 0; level <= levels_.count(); ++level)
+    pair_begins_.push_back(begin_[std::size_t(level * kMostSorted)]);
   sorted_.resize(pairs_.size());
   for (const Pair& pair : pairs_) sorted_[std::size_t(begin_[place(pair)]++)] = pair;
 }
@@ -423,7 +429,6 @@ void SpaceBatches::lay_out() {
 
 void SpaceBatches::build(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
                          std::span<const PointBody<3>> bodies) {
-  find_pairs(contacts, which, bodies);
   lay_out();
   const bool belts = std::any_of(which.begin(), which.end(),
                                  [&](int i) { return !contacts[std::size_t(i)].surface().isZero(0); });

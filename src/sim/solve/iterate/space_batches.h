@@ -11,6 +11,7 @@
 #include "sim/math/workers.h"
 #include "sim/solve/iterate/contact_constraint.h"
 #include "sim/solve/iterate/pair_levels.h"
+#include "sim/solve/iterate/pieces.h"
 
 namespace obscura::sim {
 
@@ -39,7 +40,8 @@ struct Settling {
   std::vector<int> bodies;           // island by island
   std::vector<unsigned char> flags;  // of each body: its contacts are iterated now, next, never
 
-  /// The islands of the bodies that the contacts `which` join; all are open. `never`: bodies on joints.
+  /// The islands of the bodies that the contacts `which` join, of which those of a pair follow each other;
+  /// all are open. `never`: bodies on joints.
   void begin(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
              std::span<const PointBody<3>> moving, std::span<const int> never);
   /// After an iteration: closes islands that have settled or spent their budget. Whether any is left.
@@ -50,7 +52,13 @@ struct Settling {
   bool narrowed = false;  // islands have closed since the last iteration
 
  private:
+  struct Pair {
+    int a, b, contacts = 0;
+    double rate = 0;
+  };
+
   Islands sets_;
+  std::vector<Pair> pairs_;
 };
 
 /// The contacts of space, four pairs side by side that share no body which moves. They come to what one pair
@@ -62,7 +70,23 @@ class SpaceBatches {
   /// The pairs of a level (find_pairs()) are shared by the workers; null: there are none.
   explicit SpaceBatches(std::shared_ptr<Workers> workers) : workers_(std::move(workers)) {}
 
-  /// Lays out the contacts `which`, ascending, of `contacts`, in which those of a pair follow each other.
+  /// Sorts the pairs of the contacts `which`, ascending, of `contacts`, in which those of a pair follow each
+  /// other, by levels, before the following.
+  void sort(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
+            std::span<const PointBody<3>> bodies);
+  /// act(first, end) for each pair, of whose contacts these are the numbers among `which`: those of a level
+  /// at once, so to each body that moves in their order.
+  template <class Act>
+  void each_pair(const Act& act) const {
+    for (std::size_t level = 0; level + 1 < pair_begins_.size(); ++level) {
+      const int first = pair_begins_[level];
+      each(workers_.get(), pair_begins_[level + 1] - first, kBodyPiece, [&](int begin, int end) {
+        for (auto i = std::size_t(first + begin); i < std::size_t(first + end); ++i)
+          act(sorted_[i].first, sorted_[i].first + sorted_[i].count);
+      });
+    }
+  }
+  /// Lays them out.
   void build(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
              std::span<const PointBody<3>> bodies);
   /// Says which islands their bodies are of, before the following.
@@ -116,8 +140,6 @@ class SpaceBatches {
     int a, b, first, count, level;
   };
 
-  void find_pairs(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
-                  std::span<const PointBody<3>> bodies);
   void lay_out();
   void fill(Batch& batch, std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
             int none);
@@ -130,7 +152,8 @@ class SpaceBatches {
 
   std::shared_ptr<Workers> workers_;
   std::vector<Pair> pairs_, sorted_;
-  std::vector<int> begin_;  // of each level and number of contacts, among the sorted
+  std::vector<int> begin_;        // of each level and number of contacts, among the sorted
+  std::vector<int> pair_begins_;  // of each level, and where they end
   PairLevels levels_;
   std::vector<Batch> batches_;
   std::vector<int> level_begins_, open_begins_;  // among batches_ and open_, and where they end

@@ -7,6 +7,7 @@
 // can raise the energy, with friction or where something already parts; then e is less, so that it does not.
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <tuple>
 
@@ -169,8 +170,11 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
   struck_ = false;
   when_.assign(n + 1, -1), due_.clear();
   const auto fast = [&](int i) { return most_passing(touches_[i]) >= restitution_threshold_; };
-  bool any = false;
-  for (int i = 0; i < int(touches_.size()) && !any; ++i) any = fast(i);
+  std::atomic<bool> any = false;
+  each(workers(), int(touches_.size()), kTouchPiece, [&](int begin, int end) {
+    for (int i = begin; i < end && !any.load(std::memory_order_relaxed); ++i)
+      if (fast(i)) any = true;
+  });
   if (!any) return;
   begin_flights(state, h);
   find_closing(h);

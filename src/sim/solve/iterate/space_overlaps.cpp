@@ -84,12 +84,7 @@ void SpaceIterative::push_apart(OverlapPair& pair) {
     const ContactConstraint& touch = touches_[it.touch];
     const double left = std::max(it.wanted - touch.n.dot(slip(touch)), -it.response * it.parted);
     it.parted += left / it.response;
-    const Vec<D> impulse = left / it.response * touch.n;
-    // what does not move may be another thread's too
-    const auto push_one = [&](PointBody<D>& m, const Vec<D>& arm, const Vec<D>& its) {
-      if (m.inverse_mass > 0) m.v += m.inverse_mass * its, m.w += m.inverse_inertia * moment<D>(arm, its);
-    };
-    push_one(moving_[touch.a], touch.arm_a, impulse), push_one(moving_[touch.b], touch.arm_b, -impulse);
+    push(touch, left / it.response * touch.n);
     pair.change = std::max(pair.change, std::fabs(left));
   }
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/solve/iterate/pieces.h"
 #include "sim/solve/iterate/space.h"
 
 namespace obscura::sim {
@@ -64,10 +65,12 @@ void SpaceIterative::settle_contacts() {
 // those of few contacts and uneven masses (sim/solve/iterate/exact_island.h)
 void SpaceIterative::solve_exhausted() {
   batches_.store(touches_);
+  const auto left = [](const Settling::Island& it) { return it.exhausted && it.contacts <= kFewSolved; };
+  if (std::none_of(settling_.islands.begin(), settling_.islands.end(), left)) return;
   const auto few = [&](int number) {
     if (number < 0) return false;
     const Settling::Island& island = settling_.islands[number];
-    if (!island.exhausted || island.contacts > kFewSolved) return false;
+    if (!left(island)) return false;
     double least = std::numeric_limits<double>::infinity(), most = 0;  // 1/kg
     for (int i = island.first; i < island.last; ++i) {
       const double inverse_mass = moving_[settling_.bodies[i]].inverse_mass;
@@ -140,17 +143,32 @@ void SpaceIterative::shed_gains() {
     return a >= 0 ? a : settling_.island_of[touch.b];
   };
   const auto opens = [&](const ContactConstraint& touch) { return touch.n.dot(passing(touch)); };
+  if (std::none_of(settling_.islands.begin(), settling_.islands.end(),
+                   [](const Settling::Island& it) { return it.exhausted; }))
+    return;
+  const int count = int(touches_.size());
+  bearings_.resize(touches_.size());
+  each(workers(), count, kTouchPiece, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const ContactConstraint& touch = touches_[i];
+      Bearing& it = bearings_[i] = {};
+      if (!(touch.normal_impulse > 0) || touch.after) continue;
+      const int of = island(touch);
+      if (of < 0 || !settling_.islands[of].exhausted) continue;
+      const Vec<D> passes = passing(touch);
+      const double along = touch.n.dot(passes);
+      it.island = of, it.gives = touch.normal_impulse * along + touch.tangent_impulse.dot(passes);
+      it.opens = along > 0 && !touch.bounces;
+    }
+  });
   given_.assign(settling_.islands.size(), 0), some_.clear();
-  for (int i = 0; i < int(touches_.size()); ++i) {
-    const ContactConstraint& touch = touches_[i];
-    if (!(touch.normal_impulse > 0) || touch.after || island(touch) < 0) continue;
-    if (!settling_.islands[island(touch)].exhausted) continue;
-    const Vec<D> passes = passing(touch);
-    const double along = touch.n.dot(passes);
-    given_[island(touch)] += touch.normal_impulse * along + touch.tangent_impulse.dot(passes);
-    if (along > 0 && !touch.bounces) some_.push_back(i);
+  for (int i = 0; i < count; ++i) {
+    const Bearing& it = bearings_[i];
+    if (it.island < 0) continue;
+    given_[it.island] += it.gives;
+    if (it.opens) some_.push_back(i);
   }
-  std::erase_if(some_, [&](int i) { return !(given_[island(touches_[i])] > 0); });
+  std::erase_if(some_, [&](int i) { return !(given_[bearings_[i].island] > 0); });
   for (int sweep = 0; sweep < kShedding && !some_.empty(); ++sweep) {
     for (const int i : some_) {
       ContactConstraint& touch = touches_[i];
@@ -181,6 +199,7 @@ int SpaceIterative::begin_rest(const Sleep<D>::Island& island, const State<D>& s
     at->least = at->gap * at->per_width < kClosedGap ? 0 : -at->gap / h;
     push(*at, at->normal_impulse * at->n + at->tangent_impulse);
   }
+  batches_.sort(touches_, some_, moving_);
   batches_.build(touches_, some_, moving_);
   settling_.begin(touches_, some_, moving_, {});
   for (Settling::Island& its : settling_.islands) its.follows = !island.jointed;
