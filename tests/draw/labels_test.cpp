@@ -204,6 +204,48 @@ TEST(Labels, OfAnArrowThatGoesRoundKeepOffTheOthers) {
   EXPECT_LE(unseen, 4) << "of " << ahead.moments.size();
 }
 
+/// The words of an arrow that flips in an instant, as the velocity of a ball that bounces, do not jump with
+/// it, nor lie on it.
+TEST(Labels, OfAnArrowThatFlipsDoNotJump) {
+  Made made = room(8, 4.5);
+  made.body(ShapeKind::ball, {4, 2.3, 0}, 0.15);
+  Marks marks;
+  Marks::Vector vector;
+  vector.quantity = Quantity::velocity, vector.body = 0, vector.label = "v = {:.1}";
+  marks.vectors.push_back(vector);
+  for (const sim::Vec3& after : {sim::Vec3(0.4, 1, 0), sim::Vec3(-0.6, -0.9, 0), sim::Vec3(0, 0.8, 0)}) {
+    const auto at = [&](double time) {
+      sim::Snapshot now = made.now;
+      now.time = time;
+      const double flipped = 1.217;
+      now.bodies[0].position.x() = 3.5 + 0.5 * time;
+      now.bodies[0].velocity = time < flipped ? sim::Vec3(after.x(), -after.y(), 0) : after;
+      return now;
+    };
+    RunAhead ahead;
+    for (int k = 0; k <= 45; ++k) ahead.moments.push_back(at(k / 15.0)), ahead.films.push_back(k / 15.0);
+    const Illustrator artist = made.depictor();
+    const Annotations annotations(marks, artist, ahead, {.velocity = 0.8}, 60, 0);
+    std::optional<Point> last;
+    double fastest = 0, over = 0;
+    for (int n = 0; n <= 180; ++n) {
+      const sim::Snapshot now = at(n / 60.0);
+      const Projection projection = artist.projection(0, now);
+      List list;
+      annotations.draw(0, projection, now, now.time, list);
+      const Text* text = said(list, "v");
+      ASSERT_TRUE(text) << n;
+      const sim::Vec3& center = now.bodies[0].position;
+      const Point tail = projection.page(center), beside = text->at - tail;
+      over = std::max(over, covered(*text, tail, projection.page(center + 0.8 * now.bodies[0].velocity)));
+      if (last) fastest = std::max(fastest, (beside - *last).norm());
+      last = beside;
+    }
+    EXPECT_LT(fastest, 2) << after.transpose();
+    EXPECT_LT(over, 3) << after.transpose();
+  }
+}
+
 /// Two arrows on one line that point at each other stand side by side; in the picture of a film they would be
 /// a star.
 TEST(Labels, ArrowsThatMeetHeadOnStandSideBySide) {
@@ -233,6 +275,30 @@ TEST(Labels, ArrowsThatMeetHeadOnStandSideBySide) {
   EXPECT_GT(with_room, 40);
 }
 
+/// Words at a place of the room stand beside the axes, not on them.
+TEST(Labels, StandBesideAxes) {
+  Made made = room(8, 4.5);
+  const Illustrator artist = made.depictor();
+  const Projection projection = artist.projection(0, made.now);
+  for (const sim::Vec3& at : {sim::Vec3(0.7, 0, 0), sim::Vec3(0.05, 0.8, 0), sim::Vec3(-0.05, 0.03, 0)}) {
+    Marks marks;
+    marks.axes = true;
+    Marks::Label label;
+    label.text = "E = 5 J", label.at.local = at;
+    marks.labels.push_back(label);
+    RunAhead ahead{{made.now}, {0}, {}, {}, {}};
+    const Annotations annotations(marks, artist, ahead, {}, 60, 0);
+    List list;
+    annotations.draw(0, projection, made.now, 0, list);
+    const Text* text = said(list, "E");
+    ASSERT_TRUE(text);
+    const Point corner = projection.page({0, 0, 0});
+    EXPECT_EQ(covered(*text, corner, projection.page({2, 0, 0})), 0) << at.transpose();
+    EXPECT_EQ(covered(*text, corner, projection.page({0, 2, 0})), 0) << at.transpose();
+    EXPECT_LT((text->at - projection.page(at)).norm(), 1.5 * shape(*text).width) << at.transpose();
+  }
+}
+
 /// Axes lie under the plates of words, other arrows over them.
 TEST(Labels, LieOverAxes) {
   Made made = room(8, 4.5);
@@ -241,6 +307,8 @@ TEST(Labels, LieOverAxes) {
   Marks::Label label;
   label.text = "E = 5 J", label.at.local = {0.7, 0, 0};
   marks.labels.push_back(label);
+  made.body(ShapeKind::ball, {4, 2.3, 0}, 0.15);
+  marks.paths.push_back({.at = {0, {0, 0, 0}}});  // words have plates where there are paths
   const Illustrator artist = made.depictor();
   RunAhead ahead{{made.now}, {0}, {}, {}, {}};
   const Annotations annotations(marks, artist, ahead, {}, 60, 0);

@@ -34,8 +34,10 @@ constexpr std::size_t kManyNames = 40;                 // from here on a name st
 constexpr double kBeside = 2.3, kBesideInPrint = 2.1;  // gaps: from an arrow to its words
 constexpr double kNameGap = 1.3;                       // from a body to its name, as against others
 constexpr double kBesideArrows = 4;                    // points: the cost of a place that turns with an arrow
-constexpr double kSteady = 0.25;  // of its greatest length: an arrow that is never shorter
-constexpr double kLeader = 6;     // points: farther off words have a line to what they name
+constexpr double kSteady = 0.25;         // of its greatest length: an arrow that is never shorter
+constexpr std::size_t kSidesOfAxes = 4;  // places of words beside two axes
+constexpr double kRing = 26;             // points: how far around a body words of short arrows stand at most
+constexpr double kLeader = 6;            // points: farther off words have a line to what they name
 
 // of a body one arrow, from its centre
 constexpr Quantity kSingle[] = {Quantity::velocity, Quantity::acceleration, Quantity::momentum,
@@ -100,7 +102,10 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   // axes lie under plates, so that words are read over them
   const bool at_once = !film() || key.kind == WordKey::axis;
   if (at_once && !how_.survey) draw_arrows(arrows, arrow_, colours_.room, ink, list_);
-  if (key.kind != WordKey::axis) arrows_.push_back(arrows[0]), inks_.push_back(ink);
+  if (key.kind == WordKey::axis)
+    axes_.push_back(arrows[0]);
+  else
+    arrows_.push_back(arrows[0]), inks_.push_back(ink);
   const Point end = film() ? arrows[0].tip : tip;
   placing_.avoid(tail, end, film() ? kOnArrow : kOnArrowInPrint, true);
   // in print its halo, too: words that touch it look cut
@@ -122,7 +127,8 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
     const auto range = how_.plan->ranges.find(key);
     if (range != how_.plan->ranges.end() && range->second.swings())
       for (const Placing::Candidate& still :
-           Placing::beside_swing(tail, around.reach, range->second.longest, gap, size(label), point_))
+           Placing::beside_swing(tail, end, around.reach, std::max(range->second.longest, kRing * point_),
+                                 gap, size(label), point_))
         places.push_back(still);
   }
   word(key, label, std::move(places), (tail + end) / 2, std::pair(tail, end));
@@ -296,11 +302,12 @@ void Notes::turn(const WordKey& key, const Marks::Vector& vector, const Reading&
 }
 
 AroundTail Notes::around(const Marks::Vector& vector, const Reading& reading) const {
-  if (vector.body < 0 || (reading.tail - now_.bodies[std::size_t(vector.body)].position).norm() >= 1e-9)
-    return {};
+  if (vector.body < 0) return {};
   const sim::SceneInfo::Body& body = cast_.bodies[std::size_t(vector.body)];
   const double scale = view_.scale_at(reading.tail);
-  return {scale * body.radius, scale * (body.radius > 0 ? body.radius : body.half.norm())};
+  const double off = (reading.tail - now_.bodies[std::size_t(vector.body)].position).norm();
+  const double reach = body.radius > 0 ? body.radius : body.half.norm();
+  return {off < 1e-9 ? scale * body.radius : 0, scale * (reach + (off < 1e-9 ? 0 : off))};
 }
 
 void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
@@ -488,7 +495,36 @@ void Notes::label(int index, const Marks::Label& label) {
     gap += std::max(0.0, view_.scale_at(place(label.at, now_)) * (reach - label.at.local.norm()));
   }
   if (label.at.body >= 0) places = Placing::around(at, gap, size(f), point_);
+  // at a place of the room: there, but beside the axes, on either side of each
+  if (film() && label.at.body < 0 && !axes_.empty()) {
+    places.clear();
+    for (std::size_t sides = 0; sides < kSidesOfAxes; ++sides) {
+      const Point center = beside_axes(at, size(f), sides);
+      places.push_back({center, (center - at).norm(), false});
+    }
+  }
   word(key, f, places, at);
+}
+
+// Where words that would lie on axes clear them, each to the side that its bit says; where they pass an
+// axis's end they do so by and by.
+Point Notes::beside_axes(const Point& center, const Point& size, std::size_t sides) const {
+  Point at = center;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const Point way = axes_[i].tip - axes_[i].tail;
+    if (!(way.norm() > 0)) continue;
+    const Point u = way.normalized(), n = (sides >> i % 2 & 1 ? -1 : 1) * Point(-u.y(), u.x());
+    const double along = u.cwiseAbs().dot(size) / 2, across = n.cwiseAbs().dot(size) / 2 + gap_;
+    const double part = (at - axes_[i].tail).dot(u), off = (at - axes_[i].tail).dot(n);
+    if (!(std::abs(off) < across)) continue;
+    const double shared = std::min(part + along, way.norm() + along - part);
+    at += std::clamp(2 * shared / along, 0.0, 1.0) * (across - off) * n;
+  }
+  return at;
+}
+
+bool stays(const WordKey& key, std::size_t places) {
+  return places == 1 || (key.kind == WordKey::label && places <= kSidesOfAxes);
 }
 
 // The ways of the arrows of a body that begin at its centre and are never short, in a film: for places that

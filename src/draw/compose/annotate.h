@@ -78,8 +78,11 @@ struct ValueRange {
   double low = 1e300, high = -1e300;
   double longest = 0;  // page units: of its arrow
   unsigned ways = 0;   // the eighths of a circle in which its arrow points, as bits
-  /// Whether the arrow turns by more than a right angle.
-  bool swings() const { return std::popcount(ways) > 2; }
+  /// Whether the arrow turns by more than a right angle, or flips.
+  bool swings() const {
+    const unsigned turned = (ways << 1 | ways >> 7) & 0xff;  // by an eighth
+    return std::popcount(ways) > 2 || (std::popcount(ways) == 2 && !(ways & turned));
+  }
 };
 
 /// Words that could stand at any of `places`, as in a survey of a film: the index of a place means the same
@@ -92,6 +95,10 @@ struct Offered {
   std::optional<std::pair<Point, Point>> arrow{};  // from tail to tip: that it names, and does not pass over
   bool legible = true;                             // strong enough to be read
 };
+
+/// Whether words with so many places hardly move, as those at a place of the room: they are planned before
+/// others, which go out of their way.
+bool stays(const WordKey& key, std::size_t places);
 
 /// Of the sizes of two labels together: nearer than that they lie on each other.
 inline constexpr double kNearWords = 0.56;

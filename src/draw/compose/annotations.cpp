@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <span>
 #include <utility>
@@ -38,6 +39,10 @@ constexpr double kAroundWords = 1.2;  // of their size: which leaders keep off
 constexpr double kLedThrough = 120;   // points: of a leader through another label
 constexpr double kOver = 8;           // of each unit of its own arrow that it passes over
 constexpr double kTouches = 120;      // page units: of touching it on the way
+constexpr double kJump = 20;          // of each unit that it would jump with its arrow
+constexpr double kFlips = 0.8;        // cosine of the least angle by which an arrow flips
+constexpr double kNoJump = 3;         // points: no jump yet
+constexpr double kSteadily = 1.5;     // times as far as in the intervals around it: still a swing
 
 /// A label that is planned, where it stands at a sample.
 struct Planned {
@@ -114,6 +119,34 @@ void make_room(std::vector<LabelPlan::Move>& moves, std::size_t first, double un
   }
 }
 
+// How far words at place i jump from sample k - 1 to sample k, where their arrow flips: farther than they go
+// in the second fastest of the intervals around. With an arrow that only becomes longer they may.
+double jump(const Seen& at, std::size_t k, std::size_t i, double least) {
+  const Offered &last = *at[k - 1].second, &now = *at[k].second;
+  // while they are faint none is seen
+  if (!last.arrow || !now.arrow || !last.legible || !now.legible) return 0;
+  const auto way = [](const Offered& label) {
+    return Point((label.arrow->second - label.arrow->first).normalized());
+  };
+  if (way(last).dot(way(now)) > kFlips) return 0;
+  // beside the tail, where words that stand still keep their place
+  const auto beside = [&](const Offered& each) {
+    return Point(each.places[i].center - each.places[i].moved - each.arrow->first);
+  };
+  const auto step = [&](std::size_t n) -> std::optional<double> {
+    if (n < 1 || n >= at.size() || at[n - 1].first + 1 < at[n].first) return std::nullopt;
+    return (beside(*at[n].second) - beside(*at[n - 1].second)).norm();
+  };
+  const std::optional<double> here = step(k);
+  if (!here) return 0;
+  std::vector<double> around;
+  for (const std::size_t n : {k + 1, k + 2, k - 1, k > 1 ? k - 2 : 0})
+    if (const std::optional<double> each = step(n)) around.push_back(*each);
+  if (around.size() < 2) return 0;
+  std::sort(around.begin(), around.end(), std::greater());
+  return std::max(0.0, *here - kSteadily * around[1] - least);
+}
+
 /// The course of one label among those that are planned.
 class Planner {
  public:
@@ -123,7 +156,16 @@ class Planner {
         taken_(taken),
         point_(point),
         speed_(speed),
-        kind_(at.front().second->key.kind) {}
+        kind_(at.front().second->key.kind) {
+    if (kind_ != WordKey::vector) return;
+    const std::size_t n = at_.front().second->places.size();
+    for (std::size_t k = 0; k < at_.size(); ++k)
+      for (std::size_t i = 0; i < n; ++i) {
+        const double far = k > 0 ? jump(at_, k, i, kNoJump * point_) : 0;
+        if (far > 0 && jumps_.empty()) jumps_.resize(at_.size() * n, 0.0);
+        if (far > 0) jumps_[k * n + i] = kJump * far;
+      }
+  }
 
   /// The course of least cost. Ways take their time, which the search does not know: where one would have to
   /// begin before the last is over, the label is planned again, more and more reluctant to go, and the course
@@ -178,6 +220,23 @@ class Planner {
     return cost;
   }
 
+  // the cost of jumping at place i from sample k - 1 to sample k
+  double jumping(std::size_t k, std::size_t i) const {
+    return jumps_.empty() ? 0 : jumps_[k * at_.front().second->places.size() + i];
+  }
+  // the same, on the way from place i to place j, from `begin` to `end`, about sample k
+  double jumping(std::size_t k, std::size_t i, std::size_t j, double begin, double end) const {
+    if (jumps_.empty()) return 0;
+    while (k > 1 && film(k - 1) > begin) --k;
+    double cost = 0;
+    for (; k < at_.size() && film(k - 1) < end; ++k) {
+      const double u = std::clamp(((film(k) + film(k - 1)) / 2 - begin) / (end - begin), 0.0, 1.0);
+      const double gone = u * u * (3 - 2 * u);
+      cost += (1 - gone) * jumping(k, i) + gone * jumping(k, j);
+    }
+    return cost;
+  }
+
   // how long a label takes from place i to place j, s
   double time_of_way(const Offered& label, std::size_t i, std::size_t j) const {
     return std::clamp(1.5 * way(label, i, j) / speed_, kQuickest, kSlowest);
@@ -214,7 +273,7 @@ class Planner {
                        [&](std::size_t i, std::size_t j) { return best[i] < best[j]; });
       for (std::size_t i = 0; i < n; ++i) {
         std::size_t before = i;
-        double least = k > 0 ? best[i] : 0;
+        double least = k > 0 ? best[i] + jumping(k, i) : 0;
         if (k > 0 && appears(k)) {
           // while it is not shown a label changes its place at no cost
           before = ranked.front(), least = best[before];
@@ -225,6 +284,10 @@ class Planner {
             // by its length alone it may cost too much
             if (changed + kWay * way(offered, j, i) >= least) continue;
             double all = changed + cost_of_way(offered, j, i);
+            if (all < least && !jumps_.empty()) {
+              const double middle = (film(k) + film(k - 1)) / 2, lasting = time_of_way(offered, j, i);
+              all += jumping(k, j, i, middle - lasting / 2, middle + lasting / 2);
+            }
             if (all < least) all += crossing(k, j, i, least - all);
             if (all < least) before = j, least = all;
           }
@@ -247,7 +310,7 @@ class Planner {
     double best = lasting / 2, least = 1e300;
     for (const double part : {0.5, 0.75, 1.0, 0.25, 0.0}) {
       const double begin = jump - part * lasting, end = begin + lasting;
-      double sum = 0;
+      double sum = jumping(k, i, j, begin, end);
       for (std::size_t near = 0; near < at_.size(); ++near) {
         if (film(near) < jump - lasting || film(near) > jump + lasting) continue;
         const auto& [sample, offered] = at_[near];
@@ -281,9 +344,7 @@ class Planner {
           if (move.begin < free) move.end += free - move.begin, move.begin = free;
         }
       } else {
-        if (free > move.begin)
-          course.moves.back().end = course.moves.back().begin =
-              std::min(course.moves.back().begin, film(k - 1));
+        // a way that is not over while it is seen ends unseen
         shown = course.moves.size() + 1;
       }
       free = move.end;
@@ -310,8 +371,22 @@ class Planner {
         const double gone = film(k) >= move.end ? 1 : (film(k) - move.begin) / (move.end - move.begin);
         own += gone * (label.places[std::size_t(move.to)].cost - own);
       }
+      sum += jumped(course, k);
       sum += lasting(k) *
              (own + among(k, place_of_course(course, kind_, label.anchor, label.places, film(k)).first));
+    }
+    return sum;
+  }
+
+  // what a course costs by its jumps from sample k - 1 to sample k
+  double jumped(const LabelPlan::Course& course, std::size_t k) const {
+    if (k == 0 || jumps_.empty()) return 0;
+    const double middle = (film(k) + film(k - 1)) / 2;
+    double sum = jumping(k, std::size_t(course.first));
+    for (const LabelPlan::Move& move : course.moves) {
+      if (middle <= move.begin) break;
+      const double u = middle >= move.end ? 1 : (middle - move.begin) / (move.end - move.begin);
+      sum += u * u * (3 - 2 * u) * (jumping(k, std::size_t(move.to)) - sum);
     }
     return sum;
   }
@@ -321,6 +396,7 @@ class Planner {
   const Taken& taken_;
   double point_, speed_;
   WordKey::Kind kind_;
+  std::vector<double> jumps_;  // of each sample each place's cost of jumping there; none: nothing jumps
 };
 
 // points of a curve that are needed for it to be no farther than `tolerance` from the line through them, by
@@ -383,9 +459,10 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
       if (at.empty()) order.push_back(each.key);
       at.emplace_back(k, &each);
     }
-  // what has one place cannot go out of the way of what has more
-  std::stable_partition(order.begin(), order.end(),
-                        [&](const WordKey& key) { return seen[key].front().second->places.size() == 1; });
+  // what has one place, or hardly more, cannot go out of the way of what has many
+  std::stable_partition(order.begin(), order.end(), [&](const WordKey& key) {
+    return stays(key, seen[key].front().second->places.size());
+  });
   std::map<WordKey, LabelPlan::Course> planned;
   Taken taken(samples.size());
   for (const WordKey& key : order) {

@@ -30,6 +30,7 @@ constexpr double kPale = 1.7;       // contrast to the room under which words ar
 constexpr double kOnOutline = 8;    // of each unit of a body's outline under words of a film
 constexpr double kRailChord = 8;    // the length of a curve's pieces, as words see them
 constexpr double kOnRail = 4;       // of each unit of a curve under words
+constexpr double kOnSpring = 2;     // of each unit of the four lines by which words see a spring
 constexpr double kOnTrail = 0.8;    // of each unit of a trail or path under words
 constexpr double kFromEdge = 3;     // points: from words to the page's edge at least
 constexpr double kLeaves = 1.5;     // times as fast as what they name words leave the page with it
@@ -111,7 +112,8 @@ void Notes::avoid_springs() {
     if (spring.loose) continue;
     const Point a = view_.page(spring.a), b = view_.page(spring.b), u = (b - a).normalized();
     for (const double side : {-4.5, -1.5, 1.5, 4.5})
-      placing_.avoid(a + side * point_ * Point(-u.y(), u.x()), b + side * point_ * Point(-u.y(), u.x()), 1);
+      placing_.avoid(a + side * point_ * Point(-u.y(), u.x()), b + side * point_ * Point(-u.y(), u.x()),
+                     film() ? kOnSpring : 1);
   }
 }
 
@@ -349,7 +351,7 @@ void Notes::yield(std::vector<Placed>& placed) {
   std::vector<std::size_t> order(words_.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::stable_partition(order.begin(), order.end(),
-                        [&](std::size_t i) { return words_[i].places.size() == 1; });
+                        [&](std::size_t i) { return stays(words_[i].key, words_[i].places.size()); });
   for (std::size_t k = 1; k < order.size(); ++k) {
     Word& word = words_[order[k]];
     Placed& own = placed[order[k]];
@@ -457,7 +459,8 @@ void Notes::offer_places() {
                     word.arrow,  word.set.color.a >= kLegible};
     if (!how_.ranges)
       for (Placing::Candidate& each : offered.places) {
-        each.center = on_page(word, each.center);
+        const Point wanted = each.center;
+        each.center = on_page(word, wanted), each.moved = each.center - wanted;
         // words that have left the page with what they name cover nothing
         if (!seen(offered.size, each.center)) {
           each.cost = 0, each.clear = true;

@@ -41,6 +41,7 @@ class Notes {
   void mark_tails(const std::vector<double>& strength);
   void set_apart();
   AroundTail around(const Marks::Vector& vector, const Reading& reading) const;
+  Point beside_axes(const Point& center, const Point& size, std::size_t sides) const;
   std::vector<Point> steady_arrows(int body, const Marks& marks) const;
   struct Word {
     WordKey key;
@@ -112,6 +113,7 @@ class Notes {
     std::optional<Hang> hang;
   };
   std::vector<Dot> dots_;
+  std::vector<Arrow> axes_;  // those of the room
   std::vector<Arrow> arrows_;
   std::vector<Color> inks_;                   // theirs
   std::vector<std::vector<Point>> outlines_;  // of bodies, once they are asked for

@@ -15,6 +15,7 @@ namespace {
 constexpr double kBehind = 6;      // units: the cost of words behind an arrow's tail
 constexpr double kStill = 14;      // units: of words that stand still while their arrow swings
 constexpr double kFarther = 6;     // units: of those as far from the tail as the arrow is long
+constexpr double kAgainst = 10;    // units: of those against their arrow
 constexpr double kBeginsOn = 0.5;  // page units: so near it begins on an arrow
 
 /// How much of a segment lies within a rectangle, by clipping it at each side.
@@ -235,16 +236,18 @@ std::vector<Placing::Candidate> Placing::along(const Point& tail, const Point& t
   return all;
 }
 
-std::vector<Placing::Candidate> Placing::beside_swing(const Point& tail, double reach, double longest,
-                                                      double gap, const Point& size, double unit) {
+std::vector<Placing::Candidate> Placing::beside_swing(const Point& tail, const Point& tip, double reach,
+                                                      double longest, double gap, const Point& size,
+                                                      double unit) {
   constexpr int kAround = 8;
+  const Point u = (tip - tail).norm() > 0 ? Point((tip - tail).normalized()) : Point(0, 0);
   std::vector<Candidate> all;
   for (const double part : {1.0, 0.6, 0.0})
     for (int k = 0; k < kAround; ++k) {
       const double a = (k + 0.5) * 2 * std::numbers::pi / kAround;
       const Point n(std::cos(a), -std::sin(a));
-      all.push_back(
-          {tail + clear(n, reach + part * longest + gap, size), (kStill + kFarther * part) * unit, true});
+      all.push_back({tail + clear(n, reach + part * longest + gap, size),
+                     (kStill + kFarther * part + kAgainst * std::max(0.0, -u.dot(n))) * unit, true});
     }
   return all;
 }

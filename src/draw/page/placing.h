@@ -27,6 +27,7 @@ class Placing {
     double cost = 0;  // of its own: how far from what is usual
     bool leader = false;
     bool clear = false;  // of a survey: nothing lies under it
+    Point moved{0, 0};   // of a survey: by the page's edge
   };
   /// The centre of a label of `size` that lies best; it is taken from then on.
   Candidate place(const Point& size, const std::vector<Candidate>& candidates);
@@ -45,9 +46,9 @@ class Placing {
   static std::vector<Candidate> along(const Point& tail, const Point& tip, double gap, const Point& size,
                                       double unit, bool fixed = false);
   /// Places with a leader around an arrow's tail, which do not turn with it: `reach` from the tail at least,
-  /// and as far as the arrow is at its longest.
-  static std::vector<Candidate> beside_swing(const Point& tail, double reach, double longest, double gap,
-                                             const Point& size, double unit);
+  /// and as far as the arrow is at its longest. Those against it cost more.
+  static std::vector<Candidate> beside_swing(const Point& tail, const Point& tip, double reach,
+                                             double longest, double gap, const Point& size, double unit);
 
  private:
   Rect rect_of(const Point& size, const Candidate& candidate) const;
