@@ -275,6 +275,43 @@ TEST(Labels, ArrowsThatMeetHeadOnStandSideBySide) {
   EXPECT_GT(with_room, 40);
 }
 
+/// Words that are hidden before they have come to their next place do not go there at once while they are
+/// seen.
+TEST(Labels, HiddenOnTheirWayDoNotJump) {
+  std::vector<std::vector<Offered>> samples;
+  std::vector<double> films;
+  const auto hidden = [](double film) { return film > 4.4 && film < 4.8; };
+  for (int k = 0; k <= 90; ++k) {
+    const double film = k / 15.0;
+    films.push_back(film);
+    std::vector<Offered>& now = samples.emplace_back();
+    if (hidden(film)) continue;
+    Offered label{{WordKey::vector}, {60, 20}, {0, 0}, {}};
+    // the second place is free for a while before the words are hidden
+    label.places = {{{0, 0}, film > 3.9 && film < 4.4 ? 8000.0 : 0.0},
+                    {{300, 0}, film < 3.9 ? 8000.0 : 10.0}};
+    now.push_back(label);
+  }
+  const LabelPlan::Course course = courses(samples, films, 2.8, 100).at({WordKey::vector});
+  Point last(0, 0);
+  int seen = 0;
+  double fastest = 0;
+  bool before = false;
+  for (int n = 0; n <= 360; ++n) {
+    if (hidden(n / 60.0)) {
+      before = false;
+      continue;
+    }
+    const Point at =
+        place_of_course(course, WordKey::vector, {0, 0}, samples[0][0].places, n / 60.0).first.center;
+    if (before) fastest = std::max(fastest, (at - last).norm());
+    last = at, before = true, ++seen;
+  }
+  EXPECT_LT(fastest, 5);
+  EXPECT_GT(seen, 100);
+  EXPECT_FALSE(course.moves.empty());
+}
+
 /// Words at a place of the room stand beside the axes, not on them.
 TEST(Labels, StandBesideAxes) {
   Made made = room(8, 4.5);
