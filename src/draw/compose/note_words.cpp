@@ -30,7 +30,6 @@ constexpr double kPale = 1.7;       // contrast to the room under which words ar
 constexpr double kOnOutline = 8;    // of each unit of a body's outline under words of a film
 constexpr double kRailChord = 8;    // the length of a curve's pieces, as words see them
 constexpr double kOnRail = 4;       // of each unit of a curve under words
-constexpr double kOnSpring = 2;     // of each unit of the four lines by which words see a spring
 constexpr double kOnTrail = 0.8;    // of each unit of a trail or path under words
 constexpr double kFromEdge = 3;     // points: from words to the page's edge at least
 constexpr double kLeaves = 1.5;     // times as fast as what they name words leave the page with it
@@ -112,8 +111,7 @@ void Notes::avoid_springs() {
     if (spring.loose) continue;
     const Point a = view_.page(spring.a), b = view_.page(spring.b), u = (b - a).normalized();
     for (const double side : {-4.5, -1.5, 1.5, 4.5})
-      placing_.avoid(a + side * point_ * Point(-u.y(), u.x()), b + side * point_ * Point(-u.y(), u.x()),
-                     film() ? kOnSpring : 1);
+      placing_.avoid(a + side * point_ * Point(-u.y(), u.x()), b + side * point_ * Point(-u.y(), u.x()), 1);
   }
 }
 
