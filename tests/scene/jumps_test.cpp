@@ -57,6 +57,38 @@ TEST(Jumps, EachOfManyIsAtItsTime) {
   }
 }
 
+// A blow of 1000 N for .4 ms, which no stage of a step need see, however it is written; and a light that
+// flashes where cos(40 t) > c, 6.5 times in a second, for 2 acos(c) / 40 each.
+TEST(Jumps, ABlowWithinAStepIsWhole) {
+  const double around = 2 * 1000 * 1e-9 / 60;  // N s: the pieces about both jumps
+  for (const char* mode : kJumpModes) {
+    for (const bool space : {false, true}) {
+      for (const int rate : {60, 600}) {
+        const auto speed = [&](const char* force) {
+          return TextRun(pushed(space, mode, rate, force)).at(1).bodies[0].velocity.x();
+        };
+        for (const char* blow :
+             {"if(abs(t-0.5008)<0.0002,1000,0)", "if((t-0.5008)^2<0.0002^2,1000,0)",
+              "1000*(sign(0.0002-abs(t-0.5008))>0)", "1000*(cos(10*(t-0.5008))>cos(0.002))",
+              "1000*(exp(abs(t-0.5008))<exp(0.0002))"})
+          EXPECT_NEAR(speed(blow), 0.4, around) << blow << mode << space << rate;
+        EXPECT_NEAR(speed("100*(cos(40*t)>0.9999)"), 100 * 6.5 * 2 * std::acos(0.9999) / 40, 1e-8)
+            << mode << space << rate;
+      }
+    }
+  }
+}
+
+// Where rounding alone decides, no step takes more pieces than it may.
+TEST(Jumps, OfRoundingEnd) {
+  const double v = TextRun(pushed(false, "collision = \"contact\"", 60, "if(sin(t)^2+cos(t)^2<=1,1,0)"))
+                       .at(0.2)
+                       .bodies[0]
+                       .velocity.x();
+  EXPECT_GT(v, 0);
+  EXPECT_LE(v, 0.2);
+}
+
 // Half a turn of a belt, a motor whose speed jumps, and a hand that stops: all meet a jump in the midst of a
 // step.
 TEST(Jumps, MotorsAndMotionsHaveThem) {

@@ -661,6 +661,9 @@ TEST(Gear, FaultsAreTold) {
   const auto gear = [&](const std::string& keys) { return room + "[[joint]]\ntype = \"gear\"\n" + keys; };
   EXPECT_THAT(refusal(gear("joints = [\"p\", \"pp\"]\nratio = 2\n")), HasSubstr("no joint is called 'pp'"));
   EXPECT_THAT(refusal(gear("joints = [\"p\", \"q\"]\nratio = 2\n")), HasSubstr("no angle and no way"));
+  // one that names itself, or another gear
+  EXPECT_THAT(refusal(gear("name = \"g\"\njoints = [\"p\", \"g\"]\nratio = 2\n")),
+              HasSubstr("no angle and no way"));
   EXPECT_THAT(refusal(gear("joints = [\"p\", \"p\"]\nratio = 2\n")), HasSubstr("these are one"));
   EXPECT_THAT(refusal(gear("joints = [\"p\", \"p\"]\n")), HasSubstr("needs 'ratio'"));
   EXPECT_THAT(refusal(gear("between = [\"a\", \"b\"]\n")), HasSubstr("leave out 'between'"));

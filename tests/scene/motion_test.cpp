@@ -264,6 +264,30 @@ TEST(Belt, InSpaceGoesAlongItsVector) {
   EXPECT_NEAR((now.bodies[block].velocity - Vec3(0.3, 0, -0.4)).norm(), 0, 1e-6);
 }
 
+// A body that has a belt goes by it: its lower side goes back, and in space all of it along the vector.
+TEST(Belt, OfAFreeBodyDrivesItByFriction) {
+  const std::string body = "name = \"b\"\nmass = 2\nfriction = 0.5\nelasticity = 0\n";
+  for (const char* mode :
+       {"solver = \"direct\"", "solver = \"iterative\"", "collision = \"event\"", "integrator = \"euler\""}) {
+    const std::string room = fmt::format("duration = 10\n[physics]\n{}\n[room]\nwalls = \"ground\"\n", mode);
+    TextRun plane(room + "size = [8, 4]\n[[box]]\n" + body +
+                  "size = [1, 0.4]\nposition = [0, 0.2]\nsurface_speed = 3\n");
+    TextRun rolls(room + "size = [8, 4]\n[[ball]]\n" + body +
+                  "radius = 0.2\nposition = [0, 0.2]\nsurface_speed = 3\n");
+    TextRun space(room + "size = [8, 4, 8]\n[[box]]\n" + body +
+                  "size = [1, 0.4, 0.6]\nposition = [0, 0.2, 0]\nsurface_speed = [-3, 0, 4]\n");
+    for (const double t : {0.1, 0.5, 2.0}) {
+      EXPECT_NEAR(plane.at(t).bodies[0].velocity.x(), std::min(0.5 * kFall * t, 3.0), 1e-9) << mode << t;
+      // while it slips it is pushed alike, and turns back by 2 v / r: it ends when v (1 + 2) is the belt's
+      // speed
+      EXPECT_NEAR(rolls.at(t).bodies[0].velocity.x(), std::min(0.5 * kFall * t, 1.0), 1e-6) << mode << t;
+      const double along = std::min(0.5 * kFall * t, 5.0);
+      EXPECT_NEAR((space.at(t).bodies[0].velocity - along * Vec3(0.6, 0, -0.8)).norm(), 0, 1e-9) << mode << t;
+    }
+    EXPECT_NEAR(plane.at(2).energies.work, 2 * 3 * 3, 1e-9) << mode;
+  }
+}
+
 // --- letting go
 
 TEST(Release, LetsGoWithTheVelocityAndBooksTheEnergy) {
