@@ -180,6 +180,8 @@ TEST_F(Sweep, AMistypedRequestIsToldWhatWasMeantBeforeAnyRun) {
   said("--vary seed=1:2 --measure energy.total", 2, "expected NAME@WHEN");
   said("--vary seed=1:2 --vary seed=3 --measure hash@0", 2, "varied twice");
   said("--vary seed=2:1 --measure hash@0", 2, "runs backwards");
+  said("--vary ball.radius=0.1:0.25 --measure hash@0", 2,
+       "goes by 1, and so not to 0.25: give a stride, as in 0.1:0.25:0.015");
   said("--vary ball.mas=1,2 --measure hash@0", 3, "did you mean");
   said("--vary seed=1:2 --measure hash@0 -o runs.xls", 2, ".csv, .jsonl");
 }

@@ -79,14 +79,19 @@ TEST(Jumps, ABlowWithinAStepIsWhole) {
   }
 }
 
-// Where rounding alone decides, no step takes more pieces than it may.
-TEST(Jumps, OfRoundingEnd) {
-  const double v = TextRun(pushed(false, "collision = \"contact\"", 60, "if(sin(t)^2+cos(t)^2<=1,1,0)"))
-                       .at(0.2)
-                       .bodies[0]
-                       .velocity.x();
-  EXPECT_GT(v, 0);
-  EXPECT_LE(v, 0.2);
+// A force whose jumps rounding alone decides, and one that is no number for a second: runs end, and a blow in
+// the same scene is whole.
+TEST(Jumps, OfOneFormulaDoNotHideThoseOfAnother) {
+  for (const char* beside : {"if(sin(t)^2+cos(t)^2<=1,1,0)", "if(t < 1, 0, floor(sqrt(t - 1)))"}) {
+    const sim::Snapshot at =
+        TextRun(pushed(false, "collision = \"contact\"", 60, beside) +
+                "[[particle]]\nname = \"c\"\nposition = [1, 3]\nmass = 1\n"
+                "[[force]]\nof = \"c\"\ncomponents = [\"if(abs(t-0.1008)<0.0002,1000,0)\", \"0\"]\n")
+            .at(0.2);
+    EXPECT_NEAR(at.bodies[1].velocity.x(), 0.4, 2 * 1000 * 1e-9 / 60) << beside;
+    EXPECT_GE(at.bodies[0].velocity.x(), 0) << beside;
+    EXPECT_LE(at.bodies[0].velocity.x(), 0.2) << beside;
+  }
 }
 
 // Half a turn of a belt, a motor whose speed jumps, and a hand that stops: all meet a jump in the midst of a

@@ -78,7 +78,14 @@ TEST(RangeEvaluation, HoldsAllThatAFormulaComesTo) {
                            "t >= 1",
                            "if(t < 1, t, -t)",
                            "if(abs(t) < 0.01, 100, 0)",
-                           "sin(t)^2 + cos(t)^2"}) {
+                           "sin(t)^2 + cos(t)^2",
+                           "max(log(t), 1)",
+                           "sign(sqrt(t))",
+                           "sin(1/t)",
+                           "max(log(t), 1) > 0",
+                           "exp(1000*t) <= exp(2000*t)",
+                           "if(log(t) < 0, 1, 2)",
+                           "(t - 1)*exp(1000*t)"}) {
     const OfTime formula(text);
     for (int round = 0; round < 200; ++round) {
       const double from = 6 * any() - 3, to = from + std::pow(10, 2 - 6 * any());

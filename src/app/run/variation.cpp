@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -43,6 +44,9 @@ std::optional<std::vector<std::string>> range(std::string_view value, std::strin
   if (n < 0)
     throw UsageError(fmt::format("--vary {}: {} runs backwards: with a stride {} 0 it would not", text, value,
                                  by.num < 0 ? "above" : "below"));
+  if (parts.size() == 2 && n != std::floor(n))
+    throw UsageError(fmt::format("--vary {}: {} goes by 1, and so not to {}: give a stride, as in {}:{}",
+                                 text, value, typed(to), value, typed((to - from) / sim::rational(10))));
   if (n > double(kMostValues))
     throw UsageError(
         fmt::format("--vary {}: {} has {:.0f} values, more than {}", text, value, n, kMostValues));

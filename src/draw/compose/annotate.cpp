@@ -506,14 +506,14 @@ void Notes::label(int index, const Marks::Label& label) {
   word(key, f, places, at);
 }
 
-// Where words that would lie on axes clear them, each to the side that its bit says; where they pass an
-// axis's end they do so by and by.
+// Words that would lie on axes are shifted beside them, each to the side that its bit says. Past the end of
+// an axis the shift fades out, so that words that pass it do not jump.
 Point Notes::beside_axes(const Point& center, const Point& size, std::size_t sides) const {
   Point at = center;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const Point way = axes_[i].tip - axes_[i].tail;
     if (!(way.norm() > 0)) continue;
-    const Point u = way.normalized(), n = (sides >> i % 2 & 1 ? -1 : 1) * Point(-u.y(), u.x());
+    const Point u = way.normalized(), n = ((sides >> (i % 2)) & 1 ? -1 : 1) * Point(-u.y(), u.x());
     const double along = u.cwiseAbs().dot(size) / 2, across = n.cwiseAbs().dot(size) / 2 + gap_;
     const double part = (at - axes_[i].tail).dot(u), off = (at - axes_[i].tail).dot(n);
     if (!(std::abs(off) < across)) continue;

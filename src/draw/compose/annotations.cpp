@@ -344,7 +344,7 @@ class Planner {
           if (move.begin < free) move.end += free - move.begin, move.begin = free;
         }
       } else {
-        // a way that is not over while it is seen ends unseen
+        // the label is hidden before its last move ends: that goes on while it is hidden
         shown = course.moves.size() + 1;
       }
       free = move.end;

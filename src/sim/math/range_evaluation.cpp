@@ -12,8 +12,12 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Range kAll{-kInfinity, kInfinity};
-// functions that are not monotone in their last bits
-constexpr double kRounding = 1e-15;
+// of a value: twice the error of our functions (sim/math/elementary.h), which are not monotone in their last
+// bits
+constexpr double kRounding = 2e-15;
+
+// kAll also stands for what may be no number
+bool maybe_none(Range x) { return x.least == -kInfinity && x.most == kInfinity; }
 
 bool holds(Range x, double number) { return x.least <= number && number <= x.most; }
 
@@ -28,7 +32,8 @@ Range all_of(std::initializer_list<double> numbers) {
 Range together(Range a, Range b) { return {std::min(a.least, b.least), std::max(a.most, b.most)}; }
 
 Range wider(Range x) {
-  return {x.least - kRounding * std::fabs(x.least), x.most + kRounding * std::fabs(x.most)};
+  const auto by = [](double end) { return std::isfinite(end) ? kRounding * std::fabs(end) : 0; };
+  return {x.least - by(x.least), x.most + by(x.most)};
 }
 
 // 1 where it is sure, 0 where it cannot be, else either
@@ -37,6 +42,7 @@ Range truth(bool sure, bool possible) { return {sure ? 1.0 : 0.0, possible ? 1.0
 // of x, where the greatest are at 2 pi k + `crest` and the least at half a turn from there
 Range wave(Range x, double crest, Operation operation) {
   constexpr double turn = 2 * std::numbers::pi;
+  if (!std::isfinite(x.least) || !std::isfinite(x.most)) return kAll;
   if (!(x.most - x.least < turn) || std::max(std::fabs(x.least), std::fabs(x.most)) > 1e9) return {-1, 1};
   // far fewer bits are lost than this
   constexpr double near = 1e-6;
@@ -57,7 +63,7 @@ Range to_the_power(Range a, Range b) {
         all_of({at(a.least, b.least), at(a.least, b.most), at(a.most, b.least), at(a.most, b.most)}));
   }
   const double n = b.least;
-  if (!b.point() || n != std::floor(n) || n < 0) return kAll;
+  if (!b.point() || !std::isfinite(n) || n != std::floor(n) || n < 0) return kAll;
   Range all = wider(all_of({at(a.least, n), at(a.most, n)}));
   if (std::fmod(n, 2) == 0 && holds(a, 0)) all.least = n == 0 ? all.least : 0;
   return all;
@@ -70,6 +76,11 @@ Range evaluated(Operation operation, Range a, Range b, Range c) {
     return all_of({at(a.least, b.least), at(a.least, b.most), at(a.most, b.least), at(a.most, b.most)});
   };
   const auto ends = [&] { return all_of({at(a.least, 0), at(a.most, 0)}); };
+  // what may be no number stays so, but where it is compared: then it is not less, nor equal
+  const bool none = maybe_none(a) || maybe_none(b), decides = operation == less || operation == less_equal ||
+                                                              operation == equal || operation == not_equal ||
+                                                              operation == choose;
+  if (none && !decides) return kAll;
   switch (operation) {
     case constant:
     case variable:
@@ -91,6 +102,7 @@ Range evaluated(Operation operation, Range a, Range b, Range c) {
     case power:
       return to_the_power(a, b);
     case square_root:
+      return a.least < 0 ? kAll : ends();
     case logarithm:
       return a.least < 0 ? kAll : wider(ends());
     case exponential:
@@ -110,14 +122,14 @@ Range evaluated(Operation operation, Range a, Range b, Range c) {
       return b.least > 0 || !holds(a, 0) ? wider(corners()) : Range{-4, 4};
     case hyperbolic_cosine:
     case absolute: {
-      Range all = wider(ends());
+      Range all = operation == absolute ? ends() : wider(ends());
       if (holds(a, 0)) all.least = at(0, 0);
-      return operation == absolute ? Range{std::max(0.0, all.least), all.most} : all;
+      return all;
     }
     case less:
-      return truth(a.most < b.least, a.least < b.most);
+      return truth(!none && a.most < b.least, a.least < b.most);
     case less_equal:
-      return truth(a.most <= b.least, a.least <= b.most);
+      return truth(!none && a.most <= b.least, a.least <= b.most);
     case equal:
       return truth(a.point() && b.point() && a.least == b.least, a.least <= b.most && b.least <= a.most);
     case not_equal:

@@ -27,7 +27,7 @@ constexpr int kFewestIterations = 4;     // of many
 constexpr int kTouchIterations = 20000;  // touches times iterations between
 constexpr int kTempering = 5;            // rounds
 constexpr double kRoundingGain = 1e-9;   // of its kinetic energy: what an island may win by rounding
-constexpr double kFar = -1e300;          // 1/s: no touch closes so
+constexpr double kNotNear = -1e300;      // 1/s: among closing rates, a touch that is not near
 
 }  // namespace
 
@@ -80,7 +80,7 @@ SpaceIterative::ClosingRates SpaceIterative::closing_rates(double h) const {
     }
     // what is moved, as fast as it becomes within the step
     if (!quicker_.empty()) closes += quicker_[touch.a] + (touch.b < n ? quicker_[touch.b] : 0);
-    return (touch.gap - h * closes) * touch.per_width < kNearly ? closes * touch.per_width : kFar;
+    return (touch.gap - h * closes) * touch.per_width < kNearly ? closes * touch.per_width : kNotNear;
   };
   closes_.resize(touches_.size());
   each(workers(), int(touches_.size()), kTouchPiece, [&](int begin, int end) {
@@ -90,7 +90,7 @@ SpaceIterative::ClosingRates SpaceIterative::closing_rates(double h) const {
   double most = 0;
   rates_.clear();
   for (const double rate : closes_) {
-    if (rate == kFar) continue;
+    if (rate == kNotNear) continue;
     ++near;
     if (rate > 0) rates_.push_back(rate), most = std::max(most, rate);
   }

@@ -244,8 +244,8 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<double> width_;  // of bodies, m
   std::vector<char> round_;
   std::vector<Contact<D>> impulses_;    // of the substeps before
-  mutable std::vector<double> closes_;  // 1/s, of each touch; kFar: it is not near,
-  mutable std::vector<double> rates_;   // and of those that close
+  mutable std::vector<double> closes_;  // 1/s, of each touch: how fast it closes; kNotNear: it is not near
+  mutable std::vector<double> rates_;   // 1/s, of the touches that close
 
   std::vector<BodyMotion<D>> stances_;
   std::vector<double> margin_,

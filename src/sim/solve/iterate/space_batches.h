@@ -67,15 +67,16 @@ class SpaceBatches {
  public:
   static constexpr int kLanes = 4;
 
-  /// The pairs of a level (find_pairs()) are shared by the workers; null: there are none.
+  /// The pairs of a level (sort()) are shared by the workers; null: there are none.
   explicit SpaceBatches(std::shared_ptr<Workers> workers) : workers_(std::move(workers)) {}
 
   /// Sorts the pairs of the contacts `which`, ascending, of `contacts`, in which those of a pair follow each
   /// other, by levels, before the following.
   void sort(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
             std::span<const PointBody<3>> bodies);
-  /// act(first, end) for each pair, of whose contacts these are the numbers among `which`: those of a level
-  /// at once, so to each body that moves in their order.
+  /// act(first, end) for each pair, with the range of its contacts among `which`. Pairs of a level, which
+  /// share no body that moves, may be at once; so each body that moves sees its pairs in the order of
+  /// `which`. What does not move is not to be written.
   template <class Act>
   void each_pair(const Act& act) const {
     for (std::size_t level = 0; level + 1 < pair_begins_.size(); ++level) {
@@ -86,7 +87,7 @@ class SpaceBatches {
       });
     }
   }
-  /// Lays them out.
+  /// Lays them out; after sort() of the same.
   void build(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
              std::span<const PointBody<3>> bodies);
   /// Says which islands their bodies are of, before the following.
