@@ -125,7 +125,7 @@ TEST(RangeEvaluation, IsNotWiderThanNeedBe) {
   is("if(t < 5, t, 100)", 0, 1, 0, 1);
   is("if(t < 5, t, 100)", 4, 6, 4, 100);
   is("t^2", -1, 2, 0, 4);
-  is("t^3", -1, 2, -1, 8);
+  is("t^3", 1, 2, 1, 8);
   is("3 + 4", 0, 1, 7, 7);
 }
 

@@ -90,16 +90,17 @@ double PlaneIterative::contact_work(StepPart<D> part) const {
     m.x = 0.5 * (o.x + v.x), m.y = 0.5 * (o.y + v.y), m.w = 0.5 * (o.w + v.w);
     return m;
   };
+  const int room = int(model_.bodies.size());
   double sum = 0;
   for (const Pair& pair : pairs_.all()) {
-    if (pair.slot < 0 || pair.b < 0 || !(carries_[pair.a] | carries_[pair.b])) continue;
+    if (pair.slot < 0 || !(carries_[pair.a] || (pair.b >= 0 && carries_[pair.b]))) continue;
     const ContactBatch& g = batches_[pair.slot / kLanes];
     const int lane = pair.slot % kLanes;
     const Motion a = mean(pair.a), b = mean(pair.b);
     for (int k = 0; k < pair.touches; ++k) {
       const double fx = g.p[k][lane], fy = g.q[k][lane];
       if (fx == 0 && fy == 0) continue;
-      const plane::TouchRow r = plane::row(g, lane, k, poses_[pair.a], poses_[pair.b]);
+      const plane::TouchRow r = plane::row(g, lane, k, poses_[pair.a], poses_[pair.b < 0 ? room : pair.b]);
       const double n = fx * r.nx + fy * r.ny, t = fy * r.nx - fx * r.ny;
       const double surface = 0.5 * (g.belt[lane] + g.surface[k][lane]);
       sum -= n * plane::normal_speed(r, a, b) + t * (plane::tangent_speed(r, a, b) + surface);
