@@ -7,6 +7,7 @@
 
 #include "draw/compose/annotations.h"
 #include "draw/compose/comparison.h"
+#include "draw/compose/label_courses.h"
 #include "draw/made.h"
 #include "draw/page/layout.h"
 #include "draw/picture/formula.h"

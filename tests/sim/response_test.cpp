@@ -107,10 +107,7 @@ TEST(Response, OfASideAndOfPointsIsThatOfTheRow) {
 
     PointBody<3> a(three.model.bodies[0], three.at[0]), b(three.model.bodies[1], three.at[1]);
     const double before = speed(p, three.at);
-    const auto push = [](PointBody<3>& body, const Vec3& impulse, const Vec3& arm) {
-      body.v += body.inverse_mass * impulse, body.w += body.inverse_inertia * arm.cross(impulse);
-    };
-    push(a, t, arm_a), push(b, -t, arm_b);
+    a.push(t, arm_a), b.push(-t, arm_b);
     std::vector<BodyMotion<3>> after = three.at;
     after[0].v = a.v, after[0].w = a.w, after[1].v = b.v, after[1].w = b.w;
     EXPECT_NEAR(speed(p, after) - before, K, 1e-13);

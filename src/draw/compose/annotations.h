@@ -78,9 +78,4 @@ std::vector<WorldLine> path_lines(const Marks& marks,
                                   const std::vector<std::vector<sim::Track::Point>>& paths,
                                   const sim::Snapshot& now, double film);
 
-/// Where the labels of a film stand when: for each sample what it offers. A label goes to another place only
-/// where that pays, and not faster than `speed` (page units a second of the film).
-std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offered>>& samples,
-                                             const std::vector<double>& films, double point, double speed);
-
 }  // namespace obscura::draw

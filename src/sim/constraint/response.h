@@ -224,6 +224,13 @@ struct alignas(D == 3 ? 32 : 8) PointBody {
           angular_response<D>(body, at.room_from_body, AngularVec<D>(AngularVec<D>::Unit(axis)));
     }
   }
+
+  /// An impulse (N s) at an arm (m) from its centre, both in the room's frame. What does not move is not
+  /// written.
+  void push(const Vec<D>& impulse, const Vec<D>& arm) {
+    if (!(inverse_mass > 0)) return;
+    v += inverse_mass * impulse, w += inverse_inertia * moment<D>(arm, impulse);
+  }
 };
 
 }  // namespace obscura::sim

@@ -121,11 +121,11 @@ class SpaceIterative final : public Iterative<3> {
     double response = 0;  // 1/kg
     double parted = 0;    // kg m: of unit time
   };
-  // what a contact of an island whose budget is spent gives its bodies over the substep
-  struct Bearing {
-    double gives = 0;    // J
-    int island = -1;     // none: it is of another
-    bool opens = false;  // and parts them, without having bounced
+  // the work of a contact on its bodies over the substep
+  struct ContactWork {
+    double work = 0;     // J
+    int island = -1;     // whose budget is spent; -1: it does not count
+    bool opens = false;  // its bodies part there, and have not bounced
   };
   // those of a pair, and the most that a round has changed, m
   struct OverlapPair {
@@ -202,10 +202,7 @@ class SpaceIterative final : public Iterative<3> {
   void add_impulses(State<D>& state) const;
   // an impulse on a, and back on b; what does not move may be another thread's too
   void push(const ContactConstraint& touch, const Vec<D>& impulse) {
-    const auto push_one = [](PointBody<D>& m, const Vec<D>& arm, const Vec<D>& its) {
-      if (m.inverse_mass > 0) m.v += m.inverse_mass * its, m.w += m.inverse_inertia * moment<D>(arm, its);
-    };
-    push_one(moving_[touch.a], touch.arm_a, impulse), push_one(moving_[touch.b], touch.arm_b, -impulse);
+    moving_[touch.a].push(impulse, touch.arm_a), moving_[touch.b].push(-impulse, touch.arm_b);
   }
   // how fast a's matter moves against b's
   Vec<D> slip(const ContactConstraint& touch) const {
@@ -279,7 +276,7 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<int> overlap_begins_, overlap_places_;  // of each level
   std::vector<char> known_force_;                     // of each touch: whether the state has a force for it
   std::vector<double> before_, gained_, returned_;    // of each island's impacts, J
-  std::vector<Bearing> bearings_;                     // of each touch
+  std::vector<ContactWork> works_;                    // of each touch
   std::vector<double> given_;                         // by the contacts of each island, J
   bool struck_ = false;                               // whether any body had an impact in this step
   std::vector<double> when_;                          // bodies: s, their last impact in it; or -1

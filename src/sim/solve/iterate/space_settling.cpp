@@ -147,28 +147,28 @@ void SpaceIterative::shed_gains() {
                    [](const Settling::Island& it) { return it.exhausted; }))
     return;
   const int count = int(touches_.size());
-  bearings_.resize(touches_.size());
+  works_.resize(touches_.size());
   each(workers(), count, kTouchPiece, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const ContactConstraint& touch = touches_[i];
-      Bearing& it = bearings_[i] = {};
+      ContactWork& it = works_[i] = {};
       if (!(touch.normal_impulse > 0) || touch.after) continue;
       const int of = island(touch);
       if (of < 0 || !settling_.islands[of].exhausted) continue;
       const Vec<D> passes = passing(touch);
       const double along = touch.n.dot(passes);
-      it.island = of, it.gives = touch.normal_impulse * along + touch.tangent_impulse.dot(passes);
+      it.island = of, it.work = touch.normal_impulse * along + touch.tangent_impulse.dot(passes);
       it.opens = along > 0 && !touch.bounces;
     }
   });
   given_.assign(settling_.islands.size(), 0), some_.clear();
   for (int i = 0; i < count; ++i) {
-    const Bearing& it = bearings_[i];
+    const ContactWork& it = works_[i];
     if (it.island < 0) continue;
-    given_[it.island] += it.gives;
+    given_[it.island] += it.work;
     if (it.opens) some_.push_back(i);
   }
-  std::erase_if(some_, [&](int i) { return !(given_[bearings_[i].island] > 0); });
+  std::erase_if(some_, [&](int i) { return !(given_[works_[i].island] > 0); });
   for (int sweep = 0; sweep < kShedding && !some_.empty(); ++sweep) {
     for (const int i : some_) {
       ContactConstraint& touch = touches_[i];

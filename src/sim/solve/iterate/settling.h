@@ -1,0 +1,58 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/constraint/response.h"
+#include "sim/math/islands.h"
+#include "sim/solve/iterate/contact_constraint.h"
+
+namespace obscura::sim {
+
+/// Iterations that go on until contacts have settled, island by island, so that how far one gets does not
+/// hang on the others. Contacts of bodies on joints are left out.
+struct Settling {
+  static constexpr unsigned char kNow = 1, kNext = 2, kNever = 4;
+
+  /// Bodies that move and touch each other, directly or through others.
+  struct Island {
+    int contacts = 0;
+    int budget = 0, spent = 0;  // contacts times iterations
+    double rate = 0;            // the fastest that its bodies pass each other, in widths of the narrower, 1/s
+    double settled = 0;         // widths, 1/s: smaller corrections count as none
+    bool friction = false;      // whether those of friction count
+    bool follows = false;       // whether it is accelerated by conjugate directions
+    bool open = true;           // whether it has neither settled nor spent its budget
+    bool exhausted = false;     // whether it has spent its budget and not settled
+    bool changed = false;       // whether the last iteration made larger corrections
+    double change = 0, before = 0;  // by the last iterations, and those before, squared; 0: begins
+    double share = 0;               // of the directions along which it goes on
+    int first = 0, last = 0;        // its bodies, in `bodies`
+  };
+  std::vector<Island> islands;
+  std::vector<int> island_of;        // of each body, and of walls; -1: it does not move
+  std::vector<int> bodies;           // island by island
+  std::vector<unsigned char> flags;  // of each body: its contacts are iterated now, next, never
+
+  /// The islands of the bodies that the contacts `which` join, of which those of a pair follow each other;
+  /// all are open. `never`: bodies on joints.
+  void begin(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
+             std::span<const PointBody<3>> moving, std::span<const int> never);
+  /// After an iteration: closes islands that have settled or spent their budget. Whether any is left.
+  bool close_settled();
+  /// The bodies that the last iteration named are iterated now; of islands that follow, all.
+  void activate_next();
+
+  bool narrowed = false;  // islands have closed since the last iteration
+
+ private:
+  struct Pair {
+    int a, b, contacts = 0;
+    double rate = 0;
+  };
+
+  Islands sets_;
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace obscura::sim
