@@ -296,6 +296,7 @@ class ForceBuilder {
     sim::ForceText text;
     text.potential = softening > 0 ? "-S*m/sqrt(r^2 + s^2)" : "-S*m/r";
     text.centered = true;
+    force.strength = -fields.number("strength"), force.softening = softening;
     force.formula = formula(text, {{"S", fields.number("strength")}, {"s", softening}});
     give(std::move(force));
   }

@@ -80,6 +80,41 @@ void refuse_never_made(const WhenNames<D>& names) {
   }
 }
 
+// a condition of two that touch, of which a joint that stays keeps all from it
+template <int D>
+void refuse_kept_apart(const WhenNames<D>& names, const sim::When<D>& when, const Node& node) {
+  using When = sim::When<D>;
+  const sim::Model<D>& model = names.model;
+  const auto parted = [&](int joint) {
+    return std::any_of(model.whens.begin(), model.whens.end(), [&](const When& it) {
+      return std::any_of(it.actions.begin(), it.actions.end(), [&](const auto& action) {
+        return action.what == When::Action::Do::part &&
+               std::find(action.of.begin(), action.of.end(), joint) != action.of.end();
+      });
+    });
+  };
+  std::string by;
+  const auto kept = [&](const std::pair<int, int>& pair) {
+    for (int k = 0; pair.second >= 0 && k < int(model.joints.size()); ++k) {
+      const sim::Joint<D>& joint = model.joints[std::size_t(k)];
+      if (std::minmax(joint.a.body, joint.b.body) != std::minmax(pair.first, pair.second)) continue;
+      if (joint.touching || joint.later || joint.kind == sim::JointKind::pulley) continue;
+      if (joint.breaks < 1e299 || joint.breaks_torque < 1e299 || parted(k)) continue;
+      by = joint.name;
+      return true;
+    }
+    return false;
+  };
+  if (when.pairs.empty() || !std::all_of(when.pairs.begin(), when.pairs.end(), kept)) return;
+  const char* const key = when.on == When::On::touches ? "touches" : "leaves";
+  const Node& two = *node.find(key);
+  names.complaints.add(
+      two.place, fmt::format("'{}': {} and {} are joined by {}, which lets them through each other; where "
+                             "they are to touch it has touching = true",
+                             key, scene::quoted(two.list()[0].text()), scene::quoted(two.list()[1].text()),
+                             scene::quoted(by)));
+}
+
 }  // namespace
 
 template <int D>
@@ -92,6 +127,7 @@ bool whens(const Node& top, const NameTable& roster, const std::vector<NameRange
   Glued glued;
   const std::vector<std::string> wanting = missing(names);
   bool whole = true;
+  std::vector<const Node*> read;  // of each of the model's
   const Node* all = top.find("when");
   for (std::size_t k = 0; all && k < all->list().size(); ++k) {
     const Fields fields(all->list()[k], "when");
@@ -105,9 +141,10 @@ bool whens(const Node& top, const NameTable& roster, const std::vector<NameRange
     const std::size_t wrong = complaints.count();
     condition(fields, names, when, complaints);
     actions(fields, names, rebuild, world, glued, when, complaints);
-    if (complaints.count() == wrong) model.whens.push_back(std::move(when));
+    if (complaints.count() == wrong) model.whens.push_back(std::move(when)), read.push_back(&all->list()[k]);
   }
   if (whole) refuse_never_made(names);
+  for (std::size_t k = 0; whole && k < read.size(); ++k) refuse_kept_apart(names, model.whens[k], *read[k]);
   for (const sim::When<D>& when : model.whens)
     for (const auto& action : when.actions)
       model.changed = model.changed || !(action.what == Do::mark || action.what == Do::stop);

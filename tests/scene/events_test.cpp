@@ -832,6 +832,15 @@ TEST(Events, MistakesAreToldWithTheirPlace) {
                          "= \"b\"\nposition = [1, 1]\n" +
                          when("touches = [\"a\", \"b\"]")),
               HasSubstr("do not touch in collision = \"handout\""));
+  // two on a joint that stays
+  const std::string pair = ball +
+                           "[[ball]]\nname = \"bob\"\nradius = 0.1\nposition = [1, 3]\n[[joint]]\nname = "
+                           "\"rod\"\ntype = \"rod\"\nbetween = [\"ball\", \"bob\"]\n",
+                    meet = when("touches = [\"ball\", \"bob\"]");
+  EXPECT_THAT(wrong_with(pair + meet), HasSubstr("'touches': 'ball' and 'bob' are joined by 'rod'"));
+  EXPECT_EQ(wrong_with(pair + "touching = true\n" + meet), "");
+  EXPECT_EQ(wrong_with(pair + "breaks = 5\n" + meet), "");
+  EXPECT_EQ(wrong_with(pair + meet + when("time = 1", "{ release = \"rod\" }")), "");
   EXPECT_EQ(wrong_with(ball + when("time = 1"), {"when[0].time=2"}), "");
 }
 

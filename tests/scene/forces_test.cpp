@@ -88,6 +88,49 @@ TEST(Forces, AHundredTurnsOfKeplersEllipseKeepEnergyAndAreas) {
   }
 }
 
+// --- close passages
+
+// an ellipse of e = .99 from its aphelion at (1, 0): S = 1, the perihelion 5 mm from the centre at 20 m/s
+const std::string kComet = "[[particle]]\nname = \"comet\"\nposition = [1, 0]\nvelocity = [0, 0.1]\n";
+
+TEST(Forces, ACometPassesItsSunAsKeplerSays) {
+  const double a = 1 / 1.99, turn = kCircle * std::sqrt(a * a * a), t = to_a_microsecond(3 * turn);
+  const std::string sun = "[[particle]]\nname = \"sun\"\nposition = [0, 0]\nfixed = true\n";
+  const std::string worlds[] = {
+      open_room() + kComet + kText, open_room() + kComet + kAttractor,
+      open_room("gravitation = 1") + kComet + sun,
+      open_room() + kComet + sun + "[[force]]\nbetween = [\"sun\", \"comet\"]\npotential = \"-1/r\"\n",
+      open_space("coulomb = 1") +
+          "[[particle]]\nposition = [1, 0, 0]\nvelocity = [0, 0.1, 0]\ncharge = -1\n[[particle]]\nposition = "
+          "[0, "
+          "0, 0]\ncharge = 1\nfixed = true\n"};
+  for (const Sets& mode : kModes) {
+    for (const std::string& world : worlds) {
+      const TextRun comet(world, mode);
+      const sim::Snapshot far = comet.at(t);
+      EXPECT_NEAR(far.energies.total(), 0.005 - 1, 2e-4) << mode[0] << world;
+      EXPECT_NEAR(far.angular_momentum.z(), 0.1, 1e-6) << mode[0] << world;
+      EXPECT_LT((far.bodies[0].position - Vec3(1, 0, 0)).norm(), 2e-3) << mode[0] << world;
+      EXPECT_EQ(comet.run->limits_met(), sim::LimitsMet()) << mode[0] << world;
+    }
+  }
+}
+
+// two masses that fall nearly straight at each other come back to where they were let go
+TEST(Forces, TwoMassesThatFallAtEachOtherComeBack) {
+  const std::string two =
+      "[[particle]]\nposition = [0, 0]\nvelocity = [0, 0.02]\n[[particle]]\nposition = [1, 0]\nvelocity = "
+      "[0, "
+      "-0.02]\n";
+  // mu = 2: relative energy .04^2/2 - 2 = -mu/(2 a)
+  const double a = 1 / (2 - 0.0008), turn = kCircle * std::sqrt(a * a * a / 2);
+  for (const Sets& mode : kModes) {
+    const TextRun run(open_room("gravitation = 1") + two, mode);
+    EXPECT_NEAR(run.at(to_a_microsecond(turn)).energies.total(), 0.0004 - 1, 1e-3) << mode[0];
+    EXPECT_EQ(run.run->limits_met().passages.steps, 0) << mode[0];
+  }
+}
+
 // equal areas in equal times: sectors between instants a sixteenth of a turn apart, by many triangles and the
 // arcs' own curvature left out alike (Simpson's weights of half as many)
 TEST(Forces, EqualAreasInEqualTimes) {

@@ -6,6 +6,13 @@
 
 namespace obscura::app {
 
+namespace {
+
+// a rough spell: so long in all, s, and in so many of its steps
+constexpr double kRoughFor = 0.1, kRoughPart = 0.3;
+
+}  // namespace
+
 std::string text(const sim::Trouble& trouble) {
   std::string line = fmt::format("at t = {:g} s the {} of {} {}", trouble.time, trouble.quantity,
                                  trouble.body, trouble.what);
@@ -31,6 +38,22 @@ std::vector<std::string> limit_notes(const sim::Run& run) {
        "met a limit of the direct solver's work and went on to the first order only; a higher physics.rate "
        "shares the work out");
   note(met.substeps, "had bodies meet faster than 4,800 substeps a second follow; a physics.rate above does");
+  note(met.passages,
+       "had bodies pass each other, or a centre, more closely than the forces were followed: energy may have "
+       "come "
+       "from nowhere; a softening or a higher physics.rate helps");
+  note(met.wild,
+       "had a force on a body change by as much as itself within the step: energy may have come from "
+       "nowhere; a "
+       "higher physics.rate helps");
+  // what is damped may be rough for a moment
+  const double rough = double(met.rough.steps);
+  if (rough > kRoughFor * sim::value(run.rate()) &&
+      rough > kRoughPart * double(met.rough.last - met.rough.first + 1))
+    note(met.rough,
+         "had springs or forces swing a body faster than Runge-Kutta follows, which takes energy from it; a "
+         "higher "
+         "physics.rate helps");
   return notes;
 }
 

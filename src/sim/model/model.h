@@ -320,12 +320,14 @@ struct Force {
   std::shared_ptr<const ForceFunction<D>> function;
   std::vector<Subject<D>> subjects;
   std::optional<Subject<D>> center;    // of `each`: where d is measured from; a body feels the opposite
-  double strength = 0, softening = 0;  // c, N m^2/kg^2 or N m^2/C^2; s, m
+  double strength = 0, softening = 0;  // c, N m^2/kg^2 or N m^2/C^2; s, m; of an attractor -S, m^3/s^2
   double level = 0, density = 0;       // m; kg/m^2, in space kg/m^3
   bool drag = false;                   // of the air, beside that of Body::drag
 
   /// Whether it has a potential, which may change with the time.
   bool has_potential() const { return formula ? formula->potential : law != Law::function; }
+  /// Whether its formula is that of an attractor, -S m / sqrt(d^2 + s^2).
+  bool attractor() const { return law == Law::formula && center && strength != 0; }
   /// Whether it may turn bodies about their centres.
   bool turns() const { return formula ? formula->torque : law == Law::function; }
   /// Whether it has none and does work.

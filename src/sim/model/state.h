@@ -65,6 +65,9 @@ struct LimitMet {
 struct LimitsMet {
   LimitMet work;      // the exact solver went on by impulses, to the first order in the step
   LimitMet substeps;  // bodies met faster than the most substeps of the iterative one share out
+  LimitMet rough;     // the step was long for forces, by Runge-Kutta: see sim/motion/integrator.h
+  LimitMet wild;      // and forces changed by as much as themselves
+  LimitMet passages;  // bodies passed each other more closely than the pieces of a step follow
 
   bool operator==(const LimitsMet&) const = default;
 };
@@ -184,8 +187,8 @@ struct State {
   std::vector<Contact<D>> contacts;  // sorted by key
   std::vector<char> frozen;          // one a body: asleep, at rest by proof; steps leave it alone
   std::vector<double> quiet;         // one a body: sleep timer, how long it has been still, s
-  std::vector<char> broken;          // one a joint: 1 where it has broken or was let go, kGoneApart where its two
-                                     // bodies have been apart since, and touch as others do
+  std::vector<char> broken;  // one a joint: 1 where it has broken or was let go, kGoneApart where its two
+                             // bodies have been apart since, and touch as others do
   std::vector<Vec<D>> joint_forces;  // one a joint: on its a, N
   // and the torque on it about its place, N m; the hash does without, as all is said by the rest
   std::vector<AngularVec<D>> joint_torques;

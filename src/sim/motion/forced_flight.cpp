@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "sim/math/limits.h"
+
 namespace obscura::sim {
 
 template <int D>
 ForcedFlight<D>::ForcedFlight(const Model<D>& model, FlyingForces<D>& forces)
-    : model_(model), forces_(forces), x_(D * kMost), d_(D * kMost), v_(D * kMost) {
+    : model_(model), forces_(forces), passages_(model), x_(D * kMost), d_(D * kMost), v_(D * kMost) {
   bool drag = false;
   for (const Body<D>& body : model.bodies) {
     drag_.push_back(body.drag / body.mass);
@@ -18,6 +20,28 @@ ForcedFlight<D>::ForcedFlight(const Model<D>& model, FlyingForces<D>& forces)
 template <int D>
 double ForcedFlight<D>::step(Integrate* integrate, State<D>& state, int first, int count, double t, double h,
                              Stages& stages) {
+  if (!passages_.any()) return piece(integrate, state, first, count, t, h, stages);
+  double work = 0;
+  int begun = first;  // bodies that are far go together
+  const auto go_together = [&](int end) {
+    if (end > begun) work += piece(integrate, state, begun, end - begun, t, h, stages);
+    begun = end + 1;
+  };
+  for (int body = first; body < first + count; ++body) {
+    if (passages_.fastest(state, h, body) == 0) continue;
+    go_together(body);
+    step_by_passages(
+        model_.integrator, t, h, state.step, state.limits_met.passages,
+        [&] { return passages_.fastest(state, h, body); },
+        [&](double from, double length) { work += piece(integrate, state, body, 1, from, length, stages); });
+  }
+  go_together(first + count);
+  return work;
+}
+
+template <int D>
+double ForcedFlight<D>::piece(Integrate* integrate, State<D>& state, int first, int count, double t, double h,
+                              Stages& stages) {
   first_ = first, count_ = count, stage_ = 0;
   const std::size_t n = std::size_t(D * count);
   double *const places = state.x[std::size_t(first)].data(), *const velocities =
@@ -29,6 +53,10 @@ double ForcedFlight<D>::step(Integrate* integrate, State<D>& state, int first, i
   const std::span<double> d(d_.data(), n), v(v_.data(), n);
   std::fill(d.begin(), d.end(), 0.0);
   integrate(*this, t, h, d, v, stages);
+  if (model_.integrator == Integrator::rk4)
+    note_roughness(
+        state.limits_met, state.step,
+        roughness({std::size_t(count), D, 1, std::size_t(count)}, h, v, kFaintest * model_.scale, stages));
   for (int axis = 0; axis < D; ++axis) {
     const double *const moved = d_.data() + axis * count, *const now = v_.data() + axis * count;
     for (int i = 0; i < count; ++i) places[D * i + axis] += moved[i], velocities[D * i + axis] = now[i];

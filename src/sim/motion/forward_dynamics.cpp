@@ -33,6 +33,7 @@ ForwardDynamics<D>::ForwardDynamics(const Model<D>& model, const std::vector<Pat
       chains_(model),
       blasts_(model),
       forces_(model),
+      passages_(model),
       forced_flight_(model, forces_.flying()),
       tips_(model.bodies) {
   member_.assign(model.bodies.size(), -1);
@@ -277,9 +278,21 @@ void ForwardDynamics<D>::step(Integrate* integrate, State<D>& state, double t, d
   work_ = 0;
   if (all_.empty()) return;
   if (flying_ && !with && !blasting(state)) return fly(integrate, state, t, h, stages);
-  const int n = pieces(state, h);
   posed_ = with != nullptr;
-  for (int i = 0; i < n; ++i) piece(integrate, state, t + i * (h / n), h / n, stages, with ? *with : *this);
+  System& rates = with ? *with : *this;
+  if (!passages_.any()) return go(integrate, state, t, h, stages, rates);
+  step_by_passages(
+      model_.integrator, t, h, state.step, state.limits_met.passages,
+      [&] { return passages_.fastest(state, h); },
+      [&](double from, double length) { go(integrate, state, from, length, stages, rates); });
+}
+
+// in as many pieces as the fastest turn needs
+template <int D>
+void ForwardDynamics<D>::go(Integrate* integrate, State<D>& state, double t, double h, Stages& stages,
+                            System& rates) {
+  const int n = pieces(state, h);
+  for (int i = 0; i < n; ++i) piece(integrate, state, t + i * (h / n), h / n, stages, rates);
 }
 
 // bodies that nothing but forces on each alone acts on, in blocks that stay in the nearest cache
@@ -301,6 +314,9 @@ void ForwardDynamics<D>::piece(Integrate* integrate, State<D>& state, double t, 
   const int n = int(bodies_.size()), still = n - turning_;
   load(state);
   integrate(rates, t, h, d_, v_, stages);
+  if (model_.integrator == Integrator::rk4 && rates.smooth())
+    note_roughness(state.limits_met, state.step,
+                   roughness({bodies_.size(), D, D, 1}, h, v_, kFaintest * model_.scale, stages));
 
   for (int i = 0; i < n; ++i) {
     state.x[bodies_[i]] += Eigen::Map<const Vec<D>>(d_.data() + D * i);

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/force/close_passages.h"
 #include "sim/force/explosion.h"
 #include "sim/force/forces.h"
 #include "sim/force/spring.h"
@@ -56,8 +57,9 @@ class ForwardDynamics final : public System {
   Articulated<D>& chains() { return chains_; }
   const Articulated<D>& chains() const { return chains_; }
 
-  /// Moves the coupled bodies of `state` from t to t + h. `with`: the system to integrate instead of this
-  /// one, one that adds forces to rates(), as ExactSolver adds those of contacts.
+  /// Moves the coupled bodies of `state` from t to t + h, in pieces where they turn far or pass each other
+  /// closely. `with`: the system to integrate instead of this one, one that adds forces to rates(), as
+  /// ExactSolver adds those of contacts.
   void step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages,
             System* with = nullptr);
 
@@ -127,6 +129,7 @@ class ForwardDynamics final : public System {
   void gather_marked(const State<D>& state, const Subset& of);
   void load(const State<D>& state);
   int pieces(const State<D>& state, double h) const;
+  void go(Integrate* integrate, State<D>& state, double t, double h, Stages& stages, System& rates);
   void fly(Integrate* integrate, State<D>& state, double t, double h, Stages& stages);
   void piece(Integrate* integrate, State<D>& state, double t, double h, Stages& stages, System& rates);
   Moving moving(const Hold& hold, double t) const;
@@ -156,6 +159,7 @@ class ForwardDynamics final : public System {
   bool only_forces_ = false, flying_ = false;  // nothing else of the model ties; all that is gathered flies
   Blasts<D> blasts_;
   Forces<D> forces_;
+  ClosePassages<D> passages_;
   ForcedFlight<D> forced_flight_;
   std::vector<Wrench<D>> pushes_;  // of forces_, one a member
   SupportVertices<D> tips_;

@@ -5,6 +5,8 @@
 // Divided by six last: under a constant force whose numbers are short binary fractions the step is exact.
 // Source: Kutta (1901); Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I (1993), §II.1.
 
+#include <cmath>
+
 #include "sim/math/axpy.h"
 #include "sim/motion/integrator.h"
 
@@ -16,6 +18,9 @@ void sum(std::size_t n, double h, const double* __restrict k1, const double* __r
          const double* __restrict k3, const double* __restrict k4, double* __restrict y) {
   for (std::size_t i = 0; i < n; ++i) y[i] += h * (k1[i] + 2 * (k2[i] + k3[i]) + k4[i]) / 6;
 }
+
+constexpr double kRoughStep = 0.001, kWildStep = 0.05;
+constexpr double kSlowest = 0.02;  // of the fastest body
 
 }  // namespace
 
@@ -39,6 +44,35 @@ void rk4(System& system, double t, double h, std::span<double> d, std::span<doub
   system.rates(t + h, ds, vs, d4, v4);
   sum(n, h, d1.data(), d2.data(), d3.data(), d4.data(), d.data());
   sum(n, h, v1.data(), v2.data(), v3.data(), v4.data(), v.data());
+}
+
+double roughness(const VelocityRows& rows, double h, std::span<const double> v, double least,
+                 Stages& stages) {
+  const auto k1 = stages.row(3, v.size()), k2 = stages.row(5, v.size());
+  const auto k3 = stages.row(7, v.size()), k4 = stages.row(9, v.size());
+  double largest = 0;
+  const auto worst = [&](double more) {
+    double most = 0;
+    for (std::size_t body = 0; body < rows.bodies; ++body) {
+      double error = 0, size = 0;
+      for (std::size_t axis = 0; axis < rows.axes; ++axis) {
+        const std::size_t i = body * rows.body + axis * rows.axis;
+        error += std::fabs((k1[i] - k2[i]) - (k3[i] - k4[i]));
+        size += std::fabs(v[i]) + h * std::fabs(k2[i]);
+      }
+      if (size > largest) largest = size;
+      if (h * error > 6 * most * (size + more)) most = h * error / (6 * (size + more));
+    }
+    return most;
+  };
+  const double most = worst(least);
+  // what others have just begun to move is told by what it does to them
+  return most > kRoughStep ? worst(least + kSlowest * largest) : most;
+}
+
+void note_roughness(LimitsMet& met, std::int64_t step, double roughness) {
+  if (roughness > kRoughStep) met.rough.note(step);
+  if (roughness > kWildStep) met.wild.note(step);
 }
 
 }  // namespace obscura::sim

@@ -210,6 +210,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void step_group(State<D>& state, double t, double h);
   void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
              std::span<double> v_rate) override;
+  bool smooth() const override { return constraints_.empty(); }
   void collect_bodies(State<D>& state);
   bool all_finite(const State<D>& state) const;
   double kinetic_energy(const State<D>& state) const;

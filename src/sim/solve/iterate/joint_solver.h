@@ -59,6 +59,7 @@ class JointSolver final : public System {
   /// The system of that step: what `dynamics` has, and f with J v' + J' v = 0.
   void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
              std::span<double> v_rate) override;
+  bool smooth() const override { return false; }
 
   /// Computes the rows at the present poses.
   void compute_rows();

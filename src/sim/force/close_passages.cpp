@@ -1,0 +1,186 @@
+#include "sim/force/close_passages.h"
+
+#include <array>
+#include <optional>
+
+#include "sim/force/formula.h"
+#include "sim/model/body_motion.h"
+
+namespace obscura::sim {
+
+namespace {
+
+constexpr double kSlightChange = 1e-6;  // of a velocity in a step
+
+// h/tau of two points at r^2 = `r2` with the relative speed v^2 = `v2` and the relative acceleration A / r^n;
+// 0 where it is not beyond kFar
+double passage_ratio(double r2, double v2, double A, int twice_n, double h) {
+  constexpr double kFar2 = PassageLimits::kFar * PassageLimits::kFar;
+  const double h2 = h * h, pull2 = A * h2 * (A * h2), way2 = v2 * h2;
+  double far = twice_n % 2 == 0 ? 1 : std::sqrt(r2);  // r^(2 n + 2)
+  for (int i = 0; i < twice_n / 2 + 1; ++i) far *= r2;
+  double most2 = 0;
+  // a h^2 / r is the square of the ratio, and so is v^2 h^2 / r^2
+  if (pull2 > kFar2 * kFar2 * far) most2 = std::sqrt(pull2 / far);
+  if (way2 > kFar2 * r2 && pull2 * r2 > kSlightChange * kSlightChange * way2 * far)
+    most2 = std::max(most2, way2 / r2);
+  return most2 > 0 ? std::sqrt(most2) : 0;
+}
+
+// A force of a formula as |f| = A / r^n near its centre, or between two: by its values at two small
+// distances. None where it does not grow at least as 1 / sqrt(r).
+struct PowerLaw {
+  double strength;
+  int twice_n;
+};
+template <int D>
+std::optional<PowerLaw> power_law(const Force<D>& force, const Subject<D>& a, const Subject<D>& b,
+                                  double scale) {
+  constexpr double kDirection[2][3] = {{0.6, 0.8, 0}, {0.48, 0.6, 0.64}};
+  constexpr int kApart = 10;  // the distances differ by 2^10
+  const bool each = force.on == Force<D>::On::each;
+  Evaluation evaluation(force.formula->force);
+  std::array<double, std::size_t(each_slot::end)> uniform{};
+  evaluation.begin(uniform);
+  std::array<std::array<double, 2>, 16> values{};
+  std::array<const double*, 16> inputs;
+  const double r[2] = {std::ldexp(scale, -kApart), std::ldexp(scale, -2 * kApart)};
+  for (std::size_t slot = 0; slot < values.size(); ++slot) inputs[slot] = values[slot].data();
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (int axis = 0; axis < D; ++axis) values[std::size_t(axis)][k] = kDirection[D - 2][axis] * r[k];
+    if (each) {
+      values[each_slot::mass][k] = a.mass, values[each_slot::charge][k] = a.charge;
+      values[each_slot::copy][k] = a.copy;
+      values[each_slot::drag][k] = a.drag, values[each_slot::quadratic_drag][k] = a.quadratic_drag;
+    } else {
+      values[pair_slot::mass1][k] = a.mass, values[pair_slot::charge1][k] = a.charge;
+      values[pair_slot::mass2][k] = b.mass, values[pair_slot::charge2][k] = b.charge;
+    }
+  }
+  evaluation.run(2, inputs);
+  double f[2] = {0, 0};
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (int axis = 0; axis < D; ++axis) f[k] = std::max(f[k], std::fabs(evaluation.output(axis)[k]));
+  }
+  int exponent = 0;
+  if (!(f[0] > 0 && f[1] < 1e300)) return {};
+  // 2^(kApart n) is their ratio
+  std::frexp(f[1] / f[0] * (1 + 1e-9), &exponent);
+  const int twice_n = (2 * (exponent - 1) + kApart / 2) / kApart;
+  if (twice_n < 1) return {};
+  double strength = f[0];
+  for (int i = 0; i < twice_n / 2; ++i) strength *= r[0];
+  return PowerLaw{twice_n % 2 == 0 ? strength : strength * std::sqrt(r[0]), std::min(twice_n, 24)};
+}
+
+}  // namespace
+
+template <int D>
+ClosePassages<D>::ClosePassages(const Model<D>& model) : model_(model), of_body_(model.bodies.size()) {
+  using Kind = typename Force<D>::Law;
+  for (const Force<D>& force : model.forces) {
+    const double s2 = force.softening * force.softening, c = std::fabs(force.strength);
+    if (force.law == Kind::gravitation || force.law == Kind::coulomb) {
+      Group& group = groups_.emplace_back(Group{{}, {c, 4, s2}});
+      for (const Subject<D>& it : force.subjects) {
+        group.points.push_back(point(it));
+        group.points.back().weight = force.law == Kind::gravitation ? it.mass : std::fabs(it.charge);
+      }
+    } else if (force.attractor()) {
+      for (const Subject<D>& it : force.subjects) add(point(it), point(*force.center), {c * it.mass, 4, s2});
+    } else if (force.law == Kind::formula) {
+      add_formula(force);
+    }
+  }
+}
+
+template <int D>
+void ClosePassages<D>::add(Point a, Point b, const Law& law) {
+  if (a.inverse == 0 && b.inverse == 0) return;
+  if (b.body < 0) of_body_[std::size_t(a.body)].push_back(int(pairs_.size()));
+  pairs_.push_back({a, b, law});
+}
+
+template <int D>
+void ClosePassages<D>::add_formula(const Force<D>& force) {
+  const std::vector<Subject<D>>& all = force.subjects;
+  const auto near = [&](const Subject<D>& a, const Subject<D>& b) {
+    return power_law(force, a, b, model_.scale);
+  };
+  if (force.on == Force<D>::On::between) {
+    for (std::size_t k = 0; k + 1 < all.size(); k += 2) {
+      if (const auto law = near(all[k], all[k + 1]))
+        add(point(all[k]), point(all[k + 1]), {law->strength, law->twice_n, 0});
+    }
+  } else if (force.on == Force<D>::On::each) {
+    for (std::size_t k = 0; force.center && k < all.size(); ++k) {
+      if (const auto law = near(all[k], all[k]))
+        add(point(all[k]), point(*force.center), {law->strength, law->twice_n, 0});
+    }
+  } else if (!all.empty()) {
+    // among them the two that pull most
+    Subject<D> most = all[0];
+    for (const Subject<D>& it : all)
+      most.mass = std::max(most.mass, it.mass), most.charge = std::max(most.charge, std::fabs(it.charge));
+    const auto law = near(most, most);
+    if (!law) return;
+    Group& group = groups_.emplace_back(Group{{}, {law->strength, law->twice_n, 0}});
+    for (const Subject<D>& it : all) group.points.push_back(point(it));
+  }
+}
+
+template <int D>
+typename ClosePassages<D>::Point ClosePassages<D>::point(const Subject<D>& subject) const {
+  const bool yields = subject.body >= 0 && !model_.bodies[std::size_t(subject.body)].fixed;
+  return {subject.body, subject.local, yields ? 1 / model_.bodies[std::size_t(subject.body)].mass : 0};
+}
+
+template <int D>
+typename ClosePassages<D>::Place ClosePassages<D>::place(const State<D>& state, const Point& point) const {
+  if (point.body < 0) return {point.local, Vec<D>::Zero()};
+  if (point.local.isZero(0)) return {state.x[std::size_t(point.body)], state.v[std::size_t(point.body)]};
+  const BodyMotion<D> at = body_motion(state, point.body);
+  const Vec<D> arm = at.arm(point.local);
+  return {at.x + arm, at.velocity(arm)};
+}
+
+template <int D>
+double ClosePassages<D>::of_pair(const State<D>& state, double h, const Pair& pair) const {
+  const Place a = place(state, pair.a), b = place(state, pair.b);
+  return passage_ratio((a.x - b.x).squaredNorm() + pair.law.softening2, (a.v - b.v).squaredNorm(),
+                       pair.law.strength * (pair.a.inverse + pair.b.inverse), pair.law.twice, h);
+}
+
+template <int D>
+double ClosePassages<D>::fastest(const State<D>& state, double h, int body) const {
+  double most = 0;
+  for (const int pair : of_body_[std::size_t(body)])
+    most = std::max(most, of_pair(state, h, pairs_[std::size_t(pair)]));
+  return most;
+}
+
+template <int D>
+double ClosePassages<D>::fastest(const State<D>& state, double h) {
+  double most = 0;
+  for (const Pair& pair : pairs_) most = std::max(most, of_pair(state, h, pair));
+  for (const Group& group : groups_) {
+    const std::size_t n = group.points.size();
+    places_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) places_[i] = place(state, group.points[i]);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Place& a = places_[i];
+      const double weight = group.law.strength * group.points[i].weight, inverse = group.points[i].inverse;
+      for (std::size_t j = i + 1; j < n; ++j) {
+        const double A = weight * group.points[j].weight * (inverse + group.points[j].inverse);
+        most = std::max(most, passage_ratio((places_[j].x - a.x).squaredNorm() + group.law.softening2,
+                                            (places_[j].v - a.v).squaredNorm(), A, group.law.twice, h));
+      }
+    }
+  }
+  return most;
+}
+
+template class ClosePassages<2>;
+template class ClosePassages<3>;
+
+}  // namespace obscura::sim
