@@ -1,9 +1,12 @@
 #include "sim/force/close_passages.h"
 
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <optional>
 
 #include "sim/force/formula.h"
+#include "sim/math/lanes.h"
 #include "sim/model/body_motion.h"
 
 namespace obscura::sim {
@@ -12,19 +15,57 @@ namespace {
 
 constexpr double kSlightChange = 1e-6;  // of a velocity in a step
 
-// h/tau of two points at r^2 = `r2` with the relative speed v^2 = `v2` and the relative acceleration A / r^n;
-// 0 where it is not beyond kFar
-double passage_ratio(double r2, double v2, double A, int twice_n, double h) {
-  constexpr double kFar2 = PassageLimits::kFar * PassageLimits::kFar;
+constexpr double kFar2 = PassageLimits::kFar * PassageLimits::kFar;
+
+// Negative where two points at r^2 = `r2` with the relative speed v^2 = `v2` and the relative acceleration A
+// / r^n pass each other closely: h/tau > kFar. `far`: r^(2 n + 2). By signs, so that many pairs go side by
+// side.
+OBSCURA_INLINE std::int64_t passes(double r2, double v2, double A, double far, double h) {
   const double h2 = h * h, pull2 = A * h2 * (A * h2), way2 = v2 * h2;
-  double far = twice_n % 2 == 0 ? 1 : std::sqrt(r2);  // r^(2 n + 2)
-  for (int i = 0; i < twice_n / 2 + 1; ++i) far *= r2;
-  double most2 = 0;
+  const auto sign = [](double x) { return std::bit_cast<std::int64_t>(x); };
   // a h^2 / r is the square of the ratio, and so is v^2 h^2 / r^2
-  if (pull2 > kFar2 * kFar2 * far) most2 = std::sqrt(pull2 / far);
-  if (way2 > kFar2 * r2 && pull2 * r2 > kSlightChange * kSlightChange * way2 * far)
-    most2 = std::max(most2, way2 / r2);
-  return most2 > 0 ? std::sqrt(most2) : 0;
+  return sign(kFar2 * kFar2 * far - pull2) |
+         (sign(kFar2 * r2 - way2) & sign(kSlightChange * kSlightChange * way2 * far - pull2 * r2));
+}
+
+// their h/tau, or 0
+double passage_ratio(double r2, double v2, double A, int twice_n, double h) {
+  double far = twice_n % 2 == 0 ? 1 : std::sqrt(r2);
+  for (int i = 0; i < twice_n / 2 + 1; ++i) far *= r2;
+  if (passes(r2, v2, A, far, h) >= 0) return 0;
+  const double h2 = h * h, pull2 = A * h2 * (A * h2), way2 = v2 * h2;
+  const double pull = pull2 > kFar2 * kFar2 * far ? std::sqrt(pull2 / far) : 0;
+  const double way = pull2 * r2 > kSlightChange * kSlightChange * way2 * far ? way2 / r2 : 0;
+  return std::sqrt(std::max(pull, way));
+}
+
+// how points i and j of a group meet; `rows` of n: x, v, weight and inverse mass
+struct Meeting {
+  double r2, v2, A;
+};
+template <int D>
+OBSCURA_INLINE Meeting meeting(std::size_t n, std::size_t i, std::size_t j, const double* rows,
+                               double strength, double softening2) {
+  Meeting it{softening2, 0, 0};
+  for (std::size_t k = 0; k < std::size_t(D); ++k) {
+    const double d = rows[k * n + j] - rows[k * n + i], u = rows[(D + k) * n + j] - rows[(D + k) * n + i];
+    it.r2 += d * d, it.v2 += u * u;
+  }
+  const double *const weights = rows + 2 * D * n, *const inverses = weights + n;
+  it.A = strength * weights[i] * weights[j] * (inverses[i] + inverses[j]);
+  return it;
+}
+
+// whether point i of a group passes one of those behind it closely, where forces fall as 1/r^2
+template <int D>
+bool any_near(std::size_t n, std::size_t i, const double* __restrict rows, double strength, double softening2,
+              double h) {
+  std::int64_t near = 0;
+  for (std::size_t j = i + 1; j < n; ++j) {
+    const Meeting it = meeting<D>(n, i, j, rows, strength, softening2);
+    near |= passes(it.r2, it.v2, it.A, it.r2 * it.r2 * it.r2, h);
+  }
+  return near < 0;
 }
 
 // A force of a formula as |f| = A / r^n near its centre, or between two: by its values at two small
@@ -163,18 +204,31 @@ template <int D>
 double ClosePassages<D>::fastest(const State<D>& state, double h) {
   double most = 0;
   for (const Pair& pair : pairs_) most = std::max(most, of_pair(state, h, pair));
-  for (const Group& group : groups_) {
-    const std::size_t n = group.points.size();
-    places_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) places_[i] = place(state, group.points[i]);
-    for (std::size_t i = 0; i < n; ++i) {
-      const Place& a = places_[i];
-      const double weight = group.law.strength * group.points[i].weight, inverse = group.points[i].inverse;
-      for (std::size_t j = i + 1; j < n; ++j) {
-        const double A = weight * group.points[j].weight * (inverse + group.points[j].inverse);
-        most = std::max(most, passage_ratio((places_[j].x - a.x).squaredNorm() + group.law.softening2,
-                                            (places_[j].v - a.v).squaredNorm(), A, group.law.twice, h));
-      }
+  for (const Group& group : groups_) most = std::max(most, of_group(state, h, group));
+  return most;
+}
+
+// all pairs, from rows of components; pairs that are far, nearly all, are passed over side by side
+template <int D>
+double ClosePassages<D>::of_group(const State<D>& state, double h, const Group& group) {
+  const std::size_t n = group.points.size();
+  rows_.resize(n * (2 * D + 2));
+  double* const weights = rows_.data() + 2 * D * n;
+  double* const inverses = weights + n;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Place it = place(state, group.points[i]);
+    for (std::size_t k = 0; k < std::size_t(D); ++k)
+      rows_[k * n + i] = it.x[int(k)], rows_[(D + k) * n + i] = it.v[int(k)];
+    weights[i] = group.points[i].weight, inverses[i] = group.points[i].inverse;
+  }
+  const double* const rows = rows_.data();
+  double most = 0;
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    if (group.law.twice == 4 && !any_near<D>(n, i, rows, group.law.strength, group.law.softening2, h))
+      continue;
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const Meeting it = meeting<D>(n, i, j, rows, group.law.strength, group.law.softening2);
+      most = std::max(most, passage_ratio(it.r2, it.v2, it.A, group.law.twice, h));
     }
   }
   return most;

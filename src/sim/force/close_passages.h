@@ -57,6 +57,7 @@ class ClosePassages {
   Point point(const Subject<D>& subject) const;
   Place place(const State<D>& state, const Point& point) const;
   double of_pair(const State<D>& state, double h, const Pair& pair) const;
+  double of_group(const State<D>& state, double h, const Group& group);
   void add(Point a, Point b, const Law& law);
   void add_formula(const Force<D>& force);
 
@@ -64,7 +65,7 @@ class ClosePassages {
   std::vector<Pair> pairs_;
   std::vector<Group> groups_;
   std::vector<std::vector<int>> of_body_;  // pairs with a place
-  std::vector<Place> places_;
+  std::vector<double> rows_;               // of a group: x, v, weight and inverse of each
 };
 
 /// The limits of step_by_passages().
