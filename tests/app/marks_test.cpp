@@ -494,6 +494,83 @@ TEST(Marks, WordsKeepClearOfBodiesAndArrows) {
 
 /// What is fixed and near to the ground's colour is ground for words: they lie on it without a plate. On
 /// another they have one.
+/// The friction on a body that is hardly longer than the body is wide is named past the body, not on what it
+/// lies on.
+TEST(Marks, FrictionIsNamedPastItsBody) {
+  Filmed film(kScenes + "stick_slip.toml");
+  int looked = 0;
+  for (std::int64_t frame = 0; frame < film.shots.size(); frame += 10) {
+    const sim::Snapshot now = film.now(frame);
+    const draw::Projection page = film.artist.projection(0, now);
+    const double belt = page.page({4.3, 1, 0}).y();
+    for (const draw::Text& text : film.marks(now, frame).texts)
+      if (said(text).starts_with("f")) {
+        ++looked;
+        EXPECT_LT(text.at.y(), belt) << "frame " << frame;
+      }
+  }
+  EXPECT_GT(looked, 50);
+}
+
+/// The words of an arrow that swings among others stand by its body, not as far off as it is long.
+TEST(Marks, WordsOfAnArrowThatSwingsStandByItsBody) {
+  Filmed film(scene::parse(R"(title = "A charge in a field and a spring"
+duration = 3
+[room]
+size = [6, 4]
+walls = "none"
+gravity = [0, -9.81]
+electric = [3, 0]
+[[ball]]
+name = "q"
+radius = 0.18
+mass = 0.5
+charge = 1
+position = [3, 1.6]
+drag = 0.2
+[[spring]]
+between = ["q", [3, 3.4]]
+stiffness = 12
+rest_length = 1.2
+[[film.vector]]
+quantity = "weight"
+of = "q"
+label = "m g = {:.1} N"
+[[film.vector]]
+quantity = "spring_force"
+of = "q"
+label = "F_s = {:.1} N"
+[[film.vector]]
+quantity = "field"
+of = "q"
+label = "q E = {:.1} N"
+[[film.vector]]
+quantity = "acceleration"
+of = "q"
+label = "a = {:.1} m/s²"
+[[film.length]]
+between = [[3, 3.4], "q"]
+label = "l = {:.2} m"
+offset = 8
+[[film.path]]
+at = "q"
+)",
+                           "swings.toml"));
+  double off = 0;
+  int looked = 0;
+  for (std::int64_t frame = 0; frame < film.shots.size(); frame += 5) {
+    const sim::Snapshot now = film.now(frame);
+    const draw::Point body = film.artist.projection(0, now).page(now.bodies[0].position);
+    for (const draw::Text& text : film.marks(now, frame).texts)
+      if (said(text).starts_with("a")) {
+        const draw::Point middle = text.at + draw::Point(70, -10);
+        ++looked, off += (middle - body).norm();
+      }
+  }
+  ASSERT_GT(looked, 20);
+  EXPECT_LT(off / looked, 250);
+}
+
 TEST(Marks, WordsLieOnWhatIsFixedAndPale) {
   const auto look = [](const std::string& theme, const std::string& color) {
     std::vector<std::string> sets{"look.theme=" + theme};

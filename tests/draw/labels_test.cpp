@@ -247,6 +247,145 @@ TEST(Labels, OfAnArrowThatFlipsDoNotJump) {
   }
 }
 
+/// The words of an arrow that becomes longer or shorter in an instant, or in a blow, do not jump with it.
+TEST(Labels, OfAnArrowThatChangesInAnInstantDoNotJump) {
+  Made made = room(8, 4.5);
+  made.body(ShapeKind::ball, {4, 2.3, 0}, 0.15);
+  Marks marks;
+  Marks::Vector vector;
+  vector.quantity = Quantity::drag, vector.body = 0, vector.label = "D = {:.1}";
+  marks.vectors.push_back(vector);
+  struct Change {
+    double before, after, blow;
+  };
+  for (const auto& [before, after, blow] :
+       {Change{1, 0.4, 0}, {0.3, 1.3, 0}, {0.5, 0.5, 1.6}, {0.4, 1, 1.6}}) {
+    const auto at = [&, before = before, after = after, blow = blow](double time) {
+      sim::Snapshot now = made.now;
+      now.time = time;
+      now.bodies[0].position.x() = 3.5 + 0.5 * time;
+      const double since = time - 1.217;
+      now.bodies[0].drag = {0, since < 0 ? before : blow > 0 && since < 0.02 ? blow : after, 0};
+      return now;
+    };
+    RunAhead ahead;
+    for (int k = 0; k <= 45; ++k) ahead.moments.push_back(at(k / 15.0)), ahead.films.push_back(k / 15.0);
+    const Illustrator artist = made.depictor();
+    const Annotations annotations(marks, artist, ahead, {.force = 1}, 60, 0);
+    std::optional<Point> last;
+    double fastest = 0;
+    for (int n = 0; n <= 180; ++n) {
+      const sim::Snapshot now = at(n / 60.0);
+      const Projection projection = artist.projection(0, now);
+      List list;
+      annotations.draw(0, projection, now, now.time, list);
+      const Text* text = said(list, "D");
+      ASSERT_TRUE(text) << n;
+      const Point beside = text->at - projection.page(now.bodies[0].position);
+      if (last) fastest = std::max(fastest, (beside - *last).norm());
+      last = beside;
+    }
+    EXPECT_LT(fastest, 2) << before << " to " << after << " by " << blow;
+  }
+}
+
+/// Where an arrow turns around and begins elsewhere, as friction does when a box turns back, the place around
+/// which words stand goes over.
+TEST(Labels, OfAnArrowThatBeginsElsewhereGoOver) {
+  EasedArrow arrow;
+  const auto real = [](double film) {
+    return film < 1.02 ? EasedArrow::Ends{{10, 0}, {60, 0}} : EasedArrow::Ends{{-10, 0}, {-60, 0}};
+  };
+  for (int k = 0; k <= 30; ++k) arrow.add(k / 15.0, (k - 1) / 15.0, real(k / 15.0));
+  arrow.ease(100, 3);
+  double fastest = 0;
+  for (int n = 1; n <= 120; ++n) {
+    const auto at = [&](int frame) { return arrow.at(frame / 60.0, real(frame / 60.0)); };
+    fastest = std::max(fastest, (at(n).first - at(n - 1).first).norm());
+    // but it is never said to point where it does not
+    const EasedArrow::Ends eased = at(n), now = real(n / 60.0);
+    EXPECT_NEAR((eased.second - eased.first - (now.second - now.first)).norm(), 0, 1e-9) << n;
+  }
+  EXPECT_LT(fastest, 2);
+  EXPECT_NEAR(arrow.at(0, real(0)).first.x(), 10, 1e-9);
+  EXPECT_NEAR(arrow.at(2, real(2)).first.x(), -10, 1e-9);
+}
+
+/// An arrow that goes round is where it is for its words, too.
+TEST(Labels, OfAnArrowThatGoesRoundGoWithIt) {
+  EasedArrow arrow;
+  const auto real = [](double film) {
+    const double turn = 5 * film;
+    return EasedArrow::Ends{{5, 0}, {5 + 90 * std::cos(turn), (60 + 20 * film) * std::sin(turn)}};
+  };
+  for (int k = 0; k <= 30; ++k) arrow.add(k / 15.0, (k - 1) / 15.0, real(k / 15.0));
+  arrow.ease(100, 3);
+  for (int n = 0; n <= 120; ++n) {
+    const EasedArrow::Ends now = real(n / 60.0);
+    EXPECT_LT((arrow.at(n / 60.0, now).second - now.second).norm(), 1e-9) << n;
+  }
+}
+
+/// A name says nothing of an arrow that is shorter than its head by far; a value does.
+TEST(Labels, NameNoArrowThatIsHardlySeen) {
+  Made made = room(8, 4.5);
+  made.body(ShapeKind::ball, {4, 2.3, 0}, 0.15);
+  const Illustrator artist = made.depictor();
+  const auto strength = [&](const char* label, double force) {
+    made.now.bodies[0].drag = {force, 0, 0};
+    Marks marks;
+    Marks::Vector vector;
+    vector.quantity = Quantity::drag, vector.body = 0, vector.label = label;
+    marks.vectors.push_back(vector);
+    RunAhead ahead{{made.now}, {0}, {}, {}, {}};
+    const Annotations annotations(marks, artist, ahead, {.force = 0.05}, 60, 0);
+    List list;
+    annotations.draw(0, artist.projection(0, made.now), made.now, 0, list);
+    const Text* text = said(list, "F");
+    return text ? text->spans[0].color.a : 0;
+  };
+  EXPECT_EQ(strength("F", 1.2), 0);
+  EXPECT_EQ(strength("F", 3), 255);
+  EXPECT_EQ(strength("F = {:.1}", 1.2), 255);
+}
+
+/// The words of an arrow whose body leaves the picture leave it as fast, not in an instant.
+TEST(Labels, LeaveThePictureWithTheirArrow) {
+  Made made = room(8, 4.5);
+  made.body(ShapeKind::ball, {4, 2.3, 0}, 0.15);
+  Marks marks;
+  Marks::Vector vector;
+  vector.quantity = Quantity::velocity, vector.body = 0, vector.label = "v";
+  marks.vectors.push_back(vector);
+  const auto at = [&](double time) {
+    sim::Snapshot now = made.now;
+    now.time = time;
+    now.bodies[0].velocity = {2, 0, 0};
+    now.bodies[0].position.x() = 6.5 + 1.5 * time;
+    return now;
+  };
+  RunAhead ahead;
+  for (int k = 0; k <= 30; ++k) ahead.moments.push_back(at(k / 15.0)), ahead.films.push_back(k / 15.0);
+  const Illustrator artist = made.depictor();
+  const Annotations annotations(marks, artist, ahead, {.velocity = 0.4}, 60, 0);
+  Point last(0, 0);
+  bool before = false;
+  const Projection projection = artist.projection(0, made.now);
+  const double own = 1.5 / 60 * projection.scale_at({4, 2, 0});
+  double fastest = 0, farthest = 0;
+  for (int n = 0; n <= 120; ++n) {
+    const sim::Snapshot now = at(n / 60.0);
+    List list;
+    annotations.draw(0, projection, now, now.time, list);
+    const Text* text = said(list, "v");
+    if (text && before) fastest = std::max(fastest, (text->at - last).norm());
+    before = text != nullptr;
+    if (text) last = text->at, farthest = std::max(farthest, text->at.x());
+  }
+  EXPECT_LT(fastest, 1.6 * own);
+  EXPECT_GT(farthest, projection.page({8, 0, 0}).x());
+}
+
 /// Two arrows on one line that point at each other stand side by side; in the picture of a film they would be
 /// a star.
 TEST(Labels, ArrowsThatMeetHeadOnStandSideBySide) {

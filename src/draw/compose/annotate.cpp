@@ -26,12 +26,14 @@ constexpr double kApart = 1.1;          // widths of an arrow: how far one on an
 constexpr double kHeads = 3;            // the same: so near to each other heads meet
 constexpr double kHaloInPrint = 1.6;    // points: from the middle of an arrow to the edge of its halo
 constexpr double kTail = 1.7;           // widths of an arrow: radius of the dot where it begins
-constexpr double kFull = 0.28;      // of an arrow's growth: from here on its words are as strong as others
+constexpr double kFull = 0.28;          // of an arrow's growth: from here on its value is as strong as others
+constexpr double kNamedFrom = 0.4, kNamedFull = 0.66;  // the same of a name alone, up to the head's length
 constexpr double kOutOfBall = 0.6;  // of a ball's radius: how far beyond it words of an arrow within it end
 
 constexpr double kOnArrow = 16, kOnArrowInPrint = 4;   // of each unit of an arrow under words
 constexpr double kBeside = 2.3, kBesideInPrint = 2.1;  // gaps: from an arrow to its words
-constexpr double kRing = 26;  // points: how far around a body words of short arrows stand at most
+constexpr double kLate = 0.5;  // of each unit by which words are not where their arrow is
+constexpr double kRing = 26;   // points: how far around a body words of short arrows stand at most
 
 using sim::Vec3;
 
@@ -103,25 +105,59 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
       const Point off = side * kHaloInPrint * point_ * Point(-way.y(), way.x()) / way.norm();
       placing_.avoid(tail + off, end + off, 2);
     }
-  // words come and go with the arrow, but are as strong as others while it is there, however small it is
-  if (film()) fade(label, (arrows[0].grow - kSmallest) / (kFull - kSmallest));
+  // words come and go with the arrow: a value is as strong as others while it is there, however small it is;
+  // a name alone says nothing of an arrow that is hardly seen
+  const auto [from_grow, full_grow] =
+      around.valued ? std::pair(kSmallest, kFull) : std::pair(kNamedFrom, kNamedFull);
+  if (film()) fade(label, (arrows[0].grow - from_grow) / (full_grow - from_grow));
   // those of one that ends within its ball stand where it would leave it; which place they have is chosen for
   // the others
-  const double length = (end - tail).norm(), reach = (1 + kOutOfBall) * around.ball;
+  const auto [from, to] = eased(key, tail, end, around.center);
+  const double length = (to - from).norm(), reach = (1 + kOutOfBall) * around.ball;
   const bool within = film() && !how_.survey && length < reach;
-  const Point beyond = within ? Point(tail + reach / length * (end - tail)) : end;
+  const Point beyond = within ? Point(from + reach / length * (to - from)) : to;
   const double gap = (film() ? kBeside : kBesideInPrint) * gap_;
-  std::vector<Placing::Candidate> places = Placing::along(tail, beyond, gap, size(label), point_, film());
+  std::vector<Placing::Candidate> places =
+      Placing::along(from, beyond, gap, size(label), point_, film(), past(around.along_ground, from, to));
+  // where they are not beside it yet, or no more
+  if (how_.plan && how_.survey && (from != tail || to != end)) {
+    const std::vector<Placing::Candidate> beside =
+        Placing::along(tail, end, gap, size(label), point_, true, past(around.along_ground, tail, end));
+    for (std::size_t i = 0; i < places.size(); ++i)
+      places[i].cost += kLate * (places[i].center - beside[i].center).norm();
+  }
   if (how_.plan) {
     const auto range = how_.plan->ranges.find(key);
     if (range != how_.plan->ranges.end() && range->second.swings())
       for (const Placing::Candidate& still :
-           Placing::beside_swing(tail, end, around.reach, std::max(range->second.longest, kRing * point_),
-                                 gap, size(label), point_))
+           Placing::beside_swing(from, to, around.reach, std::max(range->second.longest, kRing * point_), gap,
+                                 size(label), point_))
         places.push_back(still);
   }
-  word(key, label, std::move(places), (tail + end) / 2, std::pair(tail, end));
+  word(key, label, std::move(places), (tail + end) / 2, std::pair(tail, end), around.center);
   return true;
+}
+
+// where the words of an arrow take its ends to be, as it is seen from its body
+EasedArrow::Ends Notes::eased(const WordKey& key, const Point& tail, const Point& tip,
+                              const Point& center) const {
+  const EasedArrow::Ends ends{tail - center, tip - center};
+  if (how_.arrows) (*how_.arrows)[key].add(how_.film, how_.before, ends);
+  if (!how_.plan) return {tail, tip};
+  const auto found = how_.plan->arrows.find(key);
+  if (found == how_.plan->arrows.end()) return {tail, tip};
+  const auto [from, to] = found->second.at(how_.film, ends);
+  return {from + center, to + center};
+}
+
+// how far a body reaches from an arrow's tail along it
+std::optional<double> Notes::past(std::optional<int> body, const Point& tail, const Point& tip) const {
+  if (!film() || !body) return std::nullopt;
+  const Point u = (tip - tail).normalized();
+  double far = 0;
+  for (const std::vector<Point>& outline : forms(*body, 12))
+    for (const Point& p : outline) far = std::max(far, (p - tail).dot(u));
+  return far;
 }
 
 // How much arrow i lies on the line of arrow j and over it, 0 to 1, where it would also if either were longer
@@ -290,13 +326,21 @@ void Notes::turn(const WordKey& key, const Marks::Vector& vector, const Reading&
   word(key, label, places, center);
 }
 
+Point Notes::center(int body) const {
+  return body < 0 ? Point(0, 0) : view_.page(now_.bodies[std::size_t(body)].position);
+}
+
 AroundTail Notes::around(const Marks::Vector& vector, const Reading& reading) const {
-  if (vector.body < 0) return {};
+  const bool valued = vector.label.find('{') != vector.label.npos;
+  if (vector.body < 0) return {.valued = valued};
+  std::optional<int> ground;
+  if (vector.quantity == Quantity::friction && !vector.at) ground = vector.body;
   const sim::SceneInfo::Body& body = cast_.bodies[std::size_t(vector.body)];
   const double scale = view_.scale_at(reading.tail);
   const double off = (reading.tail - now_.bodies[std::size_t(vector.body)].position).norm();
   const double reach = body.radius > 0 ? body.radius : body.half.norm();
-  return {off < 1e-9 ? scale * body.radius : 0, scale * (reach + (off < 1e-9 ? 0 : off))};
+  return {off < 1e-9 ? scale * body.radius : 0, scale * (reach + (off < 1e-9 ? 0 : off)), center(vector.body),
+          valued, ground};
 }
 
 void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
@@ -329,7 +373,7 @@ void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
     if (vector.quantity == Quantity::normal && view_.view()) {
       const Point tail = view_.page(reading.tail);
       arrow(key, tail, tail + normal_ * Point(reading.value.x(), -reading.value.y()).normalized(), label_set,
-            ink);
+            ink, {.center = center(vector.body)});
     } else {
       const double* scale = scale_of(vector.quantity, scales);
       const double length = vector.quantity == Quantity::normal ? normal_ / view_.scale_at(reading.tail)

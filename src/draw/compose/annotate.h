@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "draw/compose/depict.h"
+#include "draw/compose/eased_arrow.h"
 #include "draw/page/figure.h"
 #include "draw/page/layout.h"
 #include "draw/page/placing.h"
@@ -93,6 +94,7 @@ struct Offered {
   Point anchor;
   std::vector<Placing::Candidate> places;
   std::optional<std::pair<Point, Point>> arrow{};  // from tail to tip: that it names, and does not pass over
+  Point along{0, 0};                               // the body that the arrow goes with
   bool legible = true;                             // strong enough to be read
 };
 
@@ -117,6 +119,7 @@ struct LabelPlan {
     bool yields = true;  // whether they fade where they come over other words, which they do only in passing
   };
   std::map<WordKey, ValueRange> ranges;
+  std::map<WordKey, EasedArrow> arrows;  // as seen from their bodies
   std::map<WordKey, Course> courses;
 };
 
@@ -136,7 +139,9 @@ struct Annotating {
   double film = std::numeric_limits<double>::quiet_NaN();  // s of the film; not a number: of none
   const LabelPlan* plan = nullptr;         // of a film; none: words find their places in this one picture
   std::vector<Offered>* survey = nullptr;  // of a film: collects words instead of drawing them
-  std::map<WordKey, ValueRange>* ranges = nullptr;   // collects their values
+  std::map<WordKey, ValueRange>* ranges = nullptr;           // collects their values
+  std::map<WordKey, EasedArrow>* arrows = nullptr;           // collects arrows, too
+  double before = std::numeric_limits<double>::quiet_NaN();  // s of the film: the survey's sample before
   const Look* look = nullptr;                        // has the bodies' own arrows, which words keep off
   std::span<const std::vector<sim::Vec3>> behind{};  // what bodies leave behind them: trails and paths, too
 };

@@ -23,6 +23,7 @@ constexpr double kSpeed = 1.7;       // page units a frame that a label of the u
 constexpr double kPathError = 0.2;   // page units
 constexpr double kCurveError = 0.3;  // of a path's error: of the points among which the needed ones are found
 constexpr double kFaintest = 0.22;   // of a path's oldest end
+constexpr double kSteadyArrow = 1;   // points: of an arrow from sample to sample
 constexpr double kArrowSeen = 0.2;   // page units: of less an arrow is none
 
 // points of a curve that are needed for it to be no farther than `tolerance` from the line through them, by
@@ -182,11 +183,15 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
                      .film = films[k],
                      .survey = &offered[k],
                      .ranges = &plan.ranges,
+                     .arrows = &plan.arrows,
+                     .before = k > 0 ? films[k - 1] : -1,
                      .look = &look_};
       annotate(marks_, scales_, cast_, colours_, artist.projection(panel, moments[k]), moments[k], unused,
                how);
     }
-    const LabelPlan ranges{plan.ranges, {}};
+    const double speed = kSpeed * fps * lettering_.point / film_lettering(1, 1).point;
+    for (auto& [key, arrow] : plan.arrows) arrow.ease(speed, kSteadyArrow * lettering_.point);
+    const LabelPlan ranges{plan.ranges, plan.arrows, {}};
     for (std::size_t k = 0; k < moments.size(); ++k) {
       List unused;
       offered[k].clear();
@@ -206,8 +211,7 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
     for (const std::vector<Offered>& sample : offered)
       for (const Offered& each : sample)
         if (each.key.kind == WordKey::vector && each.legible) legible.insert(each.key.index);
-    plan.courses = courses(offered, films, lettering_.point,
-                           kSpeed * fps * lettering_.point / film_lettering(1, 1).point);
+    plan.courses = courses(offered, films, lettering_.point, speed);
     // lines behind bodies are not among what is avoided
     if (!marks_.paths.empty() || !marks_.ghosts.empty() || artist.longest_trail() > 0)
       for (auto& [key, course] : plan.courses) course.covers = true;

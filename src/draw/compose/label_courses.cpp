@@ -117,9 +117,9 @@ double jump(const Seen& at, std::size_t k, std::size_t i, double least) {
     return Point((label.arrow->second - label.arrow->first).normalized());
   };
   if (way(last).dot(way(now)) > kFlips) return 0;
-  // beside the tail, where words that stand still keep their place
+  // beside the body, where words that stand still keep their place
   const auto beside = [&](const Offered& each) {
-    return Point(each.places[i].center - each.places[i].moved - each.arrow->first);
+    return Point(each.places[i].center - each.places[i].moved - each.along);
   };
   const auto step = [&](std::size_t n) -> std::optional<double> {
     if (n < 1 || n >= at.size() || at[n - 1].first + 1 < at[n].first) return std::nullopt;

@@ -82,9 +82,10 @@ void Notes::cone(int index, const Marks::Cone& cone, const Scales& scales) {
             sector[std::size_t(std::find(outline.begin(), outline.end(), p) - outline.begin())]);
       if (hull.size() > 2) by_nodes(corners), list_.add(hull, tint);
       // the rim, and the two lines from the apex that touch it as it is seen
-      const std::size_t apex = std::size_t(std::find(hull.begin(), hull.end(), outline[0]) - hull.begin());
-      for (const std::size_t beside : {apex + 1, apex + hull.size() - 1})
-        if (apex < hull.size() && hull.size() > 2)
+      const std::size_t first_corner =
+          std::size_t(std::find(hull.begin(), hull.end(), outline[0]) - hull.begin());
+      for (const std::size_t beside : {first_corner + 1, first_corner + hull.size() - 1})
+        if (first_corner < hull.size() && hull.size() > 2)
           stroke_through({point, corners[beside % hull.size()]}, thin_, rim_ink, 2);
       rim.push_back(rim[0]);
       stroke_through(rim, thin_, rim_ink, 2);
@@ -96,13 +97,15 @@ void Notes::cone(int index, const Marks::Cone& cone, const Scales& scales) {
     // beyond the arc; in space beside the line that it ends at, for it lies within the cone
     const Point beside = view_.page(space ? tip(half, radius) : tip(half / 2, radius));
     const Point middle = view_.page(space ? tip(0, radius) : point);
-    std::vector<Placing::Candidate> places =
-        Placing::along(view_.page(point), view_.page(tip(half, long_side)), gap_, size(f), point_, film());
+    const Point apex = view_.page(point), end = view_.page(tip(half, long_side));
+    const auto [from, to] = eased(key, apex, end, center(cone.body));
+    std::vector<Placing::Candidate> places = Placing::along(from, to, gap_, size(f), point_, film());
     for (Placing::Candidate& each : places) each.cost += 4 * point_;
     const Point out = (beside - middle).normalized();
+    const Point moved = from - apex + radius / long_side * (to - from - (end - apex));
     for (const double off : {3.0, 2.0, 1.0}) {
       const Point far = off * gap_ * out + Point(out.x() * f.width / 2, out.y() * (f.ascent + f.descent) / 2);
-      places.insert(places.begin(), {beside + far, off / 2 * point_, false});
+      places.insert(places.begin(), {beside + moved + far, off / 2 * point_, false});
     }
     word(key, f, places, beside);
   });

@@ -179,17 +179,19 @@ Placing::Candidate Notes::planned(const Word& word, double& leader) const {
   return now;
 }
 
-// moved so far that the words do not reach over an edge; those of what leaves the page go with it
+// Moved so far that the words do not reach over an edge; those of what leaves the page go with it, of an
+// arrow when it is wholly beyond the edge.
 Point Notes::on_page(const Word& word, const Point& center) const {
   const Rect page = view_.window();
   const Point half = size(word.set) / 2 + Point(kFromEdge * point_, 0);
-  const auto moved = [](double at, double low, double high, double anchor, double reach) {
-    if (high - low < 2 * reach) return at;
-    const double under = std::max(0.0, low - anchor), over = std::max(0.0, anchor - high);
-    return std::clamp(at, low + reach - kLeaves * under, high - reach + kLeaves * over);
+  const auto& [a, b] = word.arrow ? *word.arrow : std::pair(word.anchor, word.anchor);
+  const Point near = a.cwiseMin(b), far = a.cwiseMax(b);
+  const auto moved = [&](int i, double low, double high) {
+    if (high - low < 2 * half[i]) return center[i];
+    const double under = std::max(0.0, low - far[i]), over = std::max(0.0, near[i] - high);
+    return std::clamp(center[i], low + half[i] - kLeaves * under, high - half[i] + kLeaves * over);
   };
-  return {moved(center.x(), page.x, page.x + page.width, word.anchor.x(), half.x()),
-          moved(center.y(), page.y, page.y + page.height, word.anchor.y(), half.y())};
+  return {moved(0, page.x, page.x + page.width), moved(1, page.y, page.y + page.height)};
 }
 
 // Words stand out against what they cover.
@@ -452,9 +454,13 @@ void Notes::offer_places() {
            low.y() < page.y + page.height;
   };
   for (Word& word : words_) {
-    Offered offered{word.key,    size(word.set),
-                    word.anchor, std::move(word.places),
-                    word.arrow,  word.set.color.a >= kLegible};
+    Offered offered{word.key,
+                    size(word.set),
+                    word.anchor,
+                    std::move(word.places),
+                    word.arrow,
+                    word.along,
+                    word.set.color.a >= kLegible};
     if (!how_.ranges)
       for (Placing::Candidate& each : offered.places) {
         const Point wanted = each.center;

@@ -13,10 +13,14 @@
 
 namespace obscura::draw {
 
-/// Of the body in the middle of which an arrow begins, page units: the radius of a ball, and how far any
-/// body reaches.
+/// Of the body in the middle of which an arrow begins, page units: the radius of a ball, how far any body
+/// reaches, and where it is. `valued`: whether the arrow's words have a number.
+/// `along_ground`: the body that friction holds where it lies.
 struct AroundTail {
   double ball = 0, reach = 0;
+  Point center{0, 0};
+  bool valued = false;
+  std::optional<int> along_ground{};
 };
 
 /// Puts marks on one page (draw/compose/annotate.h): lines at once, words when all lines are known.
@@ -41,6 +45,8 @@ class Notes {
   void mark_tails(const std::vector<double>& strength);
   void set_apart();
   AroundTail around(const Marks::Vector& vector, const Reading& reading) const;
+  Point center(int body) const;
+  std::optional<double> past(std::optional<int> body, const Point& tail, const Point& tip) const;
   Point beside_axes(const Point& center, const Point& size, std::size_t sides) const;
   std::vector<Point> steady_arrows(int body, const Marks& marks) const;
   struct Word {
@@ -50,6 +56,7 @@ class Notes {
     Point anchor;
     std::optional<std::pair<Point, Point>> arrow;
     std::optional<Hang> hang;
+    Point along{0, 0};             // the body that the arrow goes with
     std::vector<Point> outline{};  // convex: of the body that it names, where a leader ends
   };
   /// Where a word stands, and how much of its leader and of itself is seen.
@@ -81,6 +88,7 @@ class Notes {
   const std::vector<std::vector<Point>>& outlines();
   bool on_body(const Point& p);
   double bare(const Point& tail, const Point& tip);
+  EasedArrow::Ends eased(const WordKey& key, const Point& tail, const Point& tip, const Point& center) const;
   bool arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink,
              const AroundTail& around = {});
   void stroke(const std::vector<Point>& line, double width, Color color, double weight);
@@ -93,8 +101,8 @@ class Notes {
   void arc(const At& at, const Place& place, double radius, double from, double to, double width,
            Color color);
   void word(const WordKey& key, Formula set, std::vector<Placing::Candidate> places, const Point& anchor,
-            std::optional<std::pair<Point, Point>> arrow = {}) {
-    if (!set.empty()) words_.push_back({key, std::move(set), std::move(places), anchor, arrow, hang_});
+            std::optional<std::pair<Point, Point>> arrow = {}, const Point& along = {0, 0}) {
+    if (!set.empty()) words_.push_back({key, std::move(set), std::move(places), anchor, arrow, hang_, along});
   }
 
   const sim::SceneInfo& cast_;

@@ -12,9 +12,10 @@
 namespace obscura::draw {
 namespace {
 
+constexpr double kPast = 3;        // units: the cost of words past an arrow's tip, beside its line
 constexpr double kBehind = 6;      // units: the cost of words behind an arrow's tail
 constexpr double kStill = 14;      // units: of words that stand still while their arrow swings
-constexpr double kFarther = 6;     // units: of those as far from the tail as the arrow is long
+constexpr double kFarther = 14;    // units: of those as far from the tail as the arrow is long
 constexpr double kAgainst = 10;    // units: of those against their arrow
 constexpr double kBeginsOn = 0.5;  // page units: so near it begins on an arrow
 
@@ -188,8 +189,10 @@ std::vector<Placing::Candidate> Placing::around(const Point& at, double gap, con
 }
 
 std::vector<Placing::Candidate> Placing::along(const Point& tail, const Point& tip, double gap,
-                                               const Point& size, double unit, bool fixed) {
+                                               const Point& size, double unit, bool fixed,
+                                               std::optional<double> past) {
   const Point u = (tip - tail).normalized(), v(-u.y(), u.x());
+  const Point out = tail + std::max((tip - tail).norm(), past.value_or(0)) * u;
   std::vector<Candidate> all;
   double ring = 0;
   for (const double off : {0.0, 3.0, 8.0, 15.0, 24.0}) {
@@ -207,6 +210,12 @@ std::vector<Placing::Candidate> Placing::along(const Point& tail, const Point& t
       }
     }
     all.push_back({tip + clear(u, gap, size), ring + 1.5 * unit, false});
+    // past it and beside its line
+    if (past && off < 4)
+      for (const double side : {1.0, -1.0})
+        all.push_back(
+            {out + (gap + off * unit + u.cwiseAbs().dot(size) / 2) * u + clear_line(side * v, gap, size),
+             ring + kPast * unit, false});
     if (fixed && off > 6)
       all.push_back({tail + clear(-u, gap + off * unit, size), ring + kBehind * unit, true});
     ring += 8 * unit;
@@ -242,7 +251,7 @@ std::vector<Placing::Candidate> Placing::beside_swing(const Point& tail, const P
   constexpr int kAround = 8;
   const Point u = (tip - tail).norm() > 0 ? Point((tip - tail).normalized()) : Point(0, 0);
   std::vector<Candidate> all;
-  for (const double part : {1.0, 0.6, 0.0})
+  for (const double part : {1.0, 0.6, 0.3, 0.0})
     for (int k = 0; k < kAround; ++k) {
       const double a = (k + 0.5) * 2 * std::numbers::pi / kAround;
       const Point n(std::cos(a), -std::sin(a));

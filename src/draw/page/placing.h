@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "draw/page/layout.h"
@@ -42,9 +43,10 @@ class Placing {
   /// Places around a point, and farther off with a leader; beside an arrow.
   static std::vector<Candidate> around(const Point& at, double gap, const Point& size, double unit);
   /// `fixed`: first those to the right of its way, however it turns, and farther off and behind its tail with
-  /// a leader too; else first those at its upper side.
+  /// a leader too; else first those at its upper side. `past`: how far from its tail those past its tip are
+  /// at least.
   static std::vector<Candidate> along(const Point& tail, const Point& tip, double gap, const Point& size,
-                                      double unit, bool fixed = false);
+                                      double unit, bool fixed = false, std::optional<double> past = {});
   /// Places with a leader around an arrow's tail, which do not turn with it: `reach` from the tail at least,
   /// and as far as the arrow is at its longest. Those against it cost more.
   static std::vector<Candidate> beside_swing(const Point& tail, const Point& tip, double reach,
