@@ -476,6 +476,39 @@ TEST(Labels, StandBesideAxes) {
   }
 }
 
+/// Beside the three of space as well, wherever they are in the picture.
+TEST(Labels, StandBesideTheAxesOfSpace) {
+  Made made;
+  made.cast.dimension = 3, made.cast.scale = 2;
+  made.wall({0, 0, 0}, {0, 1, 0});
+  made.extent = {{-2, 0, -2}, {2, 2, 2}};
+  for (const double azimuth : {-40, 30, 75, 160})
+    for (const double elevation : {15, 25, 50}) {
+      Camera camera = slant();
+      camera.azimuth = azimuth * std::numbers::pi / 180,
+      camera.elevation = elevation * std::numbers::pi / 180;
+      const Illustrator artist(made.cast, made.look, {camera}, made.extent, 16.0 / 9);
+      const Projection projection = artist.projection(0, made.now);
+      for (double x = -0.2; x < 0.21; x += 0.05)
+        for (double y = -0.2; y < 0.21; y += 0.05) {
+          Marks marks;
+          marks.axes = true;
+          Marks::Label label;
+          label.text = "E = 5 J", label.at.local = {x, y, 0};
+          marks.labels.push_back(label);
+          RunAhead ahead{{made.now}, {0}, {}, {}, {}};
+          const Annotations annotations(marks, artist, ahead, {}, 60, 0);
+          List list;
+          annotations.draw(0, projection, made.now, 0, list);
+          const Text* text = said(list, "E");
+          ASSERT_TRUE(text);
+          for (const sim::Vec3& axis : {sim::Vec3(0.5, 0, 0), sim::Vec3(0, 0.5, 0), sim::Vec3(0, 0, 0.5)})
+            EXPECT_LT(covered(*text, projection.page({0, 0, 0}), projection.page(axis)), 1)
+                << x << " " << y << " on " << axis.transpose() << " from " << azimuth << " " << elevation;
+        }
+    }
+}
+
 /// Axes lie under the plates of words, other arrows over them.
 TEST(Labels, LieOverAxes) {
   Made made = room(8, 4.5);

@@ -39,9 +39,10 @@ struct Planned {
 };
 
 // of the smaller label, which part lies on the other
-double overlap(const Offered& a, const Point& at, const Planned& b) {
-  const Point d = (at - b.at.center).cwiseAbs();
-  const Point room = kNearWords * (a.size + b.label->size) - d;
+inline double overlap(const Offered& a, const Point& at, const Planned& b) {
+  const auto near = [&](int i) { return kNearWords * (a.size[i] + b.label->size[i]); };
+  const Point room(near(0) - std::abs(at.x() - b.at.center.x()),
+                   near(1) - std::abs(at.y() - b.at.center.y()));
   if (!(room.x() > 0 && room.y() > 0)) return 0;
   const Point least = a.size.cwiseMin(b.label->size);
   return std::min(room.x() / least.x(), 1.0) * std::min(room.y() / least.y(), 1.0);
@@ -79,12 +80,15 @@ double way(const Offered& label, std::size_t i, std::size_t j) {
   return std::hypot(turn * std::max(a.norm(), b.norm()), b.norm() - a.norm());
 }
 
-// the cost of its way from place i to place j: a label goes around the head of its arrow, not over it
-double cost_of_way(const Offered& label, std::size_t i, std::size_t j) {
+// The cost of its way from place i to place j: a label goes around the head of its arrow, not over it. No
+// more is added up than `most`.
+double cost_of_way(const Offered& label, std::size_t i, std::size_t j,
+                   double most = std::numeric_limits<double>::infinity()) {
   const Point &from = label.places[i].center, &to = label.places[j].center;
   double cost = kWay * way(label, i, j);
   if (!label.arrow) return cost;
   for (const double part : {0.2, 0.4, 0.6, 0.8}) {
+    if (cost >= most) break;
     const double over = under(label.arrow->first, label.arrow->second, from + part * (to - from),
                               label.size + Point(kHeadWide, kHeadWide));
     if (over > 0) cost += kTouches + kOver * over;
@@ -145,6 +149,7 @@ class Planner {
         point_(point),
         speed_(speed),
         kind_(at.front().second->key.kind) {
+    for (const auto& [sample, label] : at) times_.push_back(films[sample]);
     if (kind_ != WordKey::vector) return;
     const std::size_t n = at_.front().second->places.size();
     for (std::size_t k = 0; k < at_.size(); ++k)
@@ -172,7 +177,7 @@ class Planner {
   }
 
  private:
-  double film(std::size_t k) const { return films_[at_[k].first]; }
+  double film(std::size_t k) const { return times_[k]; }
   // whether it was not shown before sample k
   bool appears(std::size_t k) const { return at_[k - 1].first + 1 < at_[k].first; }
   // for how long sample k stands
@@ -192,9 +197,10 @@ class Planner {
   double on_others(std::size_t sample, const Offered& label, std::size_t i, std::size_t j,
                    double part) const {
     if (taken_[sample].empty()) return 0;
-    return on_others(sample, label,
-                     on_its_way(kind_, label.anchor, label.places[i].center, label.places[j].center,
-                                part * part * (3 - 2 * part)));
+    const Point &from = label.places[i].center, &to = label.places[j].center;
+    const double s = part * part * (3 - 2 * part);
+    if (kind_ == WordKey::name) return on_others(sample, label, on_its_way(kind_, label.anchor, from, to, s));
+    return on_others(sample, label, {from.x() + s * (to.x() - from.x()), from.y() + s * (to.y() - from.y())});
   }
 
   // the cost a second of standing somewhere at sample k, as others are there
@@ -235,13 +241,13 @@ class Planner {
   double crossing(std::size_t k, std::size_t i, std::size_t j, double most) const {
     const double lasting = time_of_way(*at_[k].second, i, j);
     const double begin = (film(k) + film(k - 1) - lasting) / 2;
-    std::size_t near = k;
-    while (near > 0 && film(near) > begin) --near;
     double cost = 0;
     constexpr int kParts = 8;
     for (int n = 1; n < kParts && cost < most; ++n) {
       const double part = double(n) / kParts;
-      while (near + 1 < at_.size() && film(near + 1) <= begin + part * lasting) ++near;
+      // the last sample until then
+      const auto after = std::upper_bound(times_.begin() + 1, times_.end(), begin + part * lasting);
+      const std::size_t near = std::size_t(after - times_.begin()) - 1;
       cost += lasting / kParts * on_others(at_[near].first, *at_[near].second, i, j, part);
     }
     return cost;
@@ -252,6 +258,12 @@ class Planner {
     const std::size_t n = at_.front().second->places.size();
     std::vector<double> best(n, 0), now(n);
     std::vector<std::size_t> ranked(n);
+    struct Ranked {
+      double best;
+      Point center;
+    };
+    std::vector<Ranked> ahead(n);
+    const bool straight = kind_ != WordKey::name;
     std::vector<std::vector<std::size_t>> from(at_.size(), std::vector<std::size_t>(n, 0));
     for (std::size_t k = 0; k < at_.size(); ++k) {
       const Offered& offered = *at_[k].second;
@@ -259,19 +271,23 @@ class Planner {
       std::iota(ranked.begin(), ranked.end(), std::size_t(0));
       std::stable_sort(ranked.begin(), ranked.end(),
                        [&](std::size_t i, std::size_t j) { return best[i] < best[j]; });
+      for (std::size_t r = 0; r < n; ++r) ahead[r] = {best[ranked[r]], offered.places[ranked[r]].center};
       for (std::size_t i = 0; i < n; ++i) {
+        const Point here = offered.places[i].center;
         std::size_t before = i;
         double least = k > 0 ? best[i] + jumping(k, i) : 0;
         if (k > 0 && appears(k)) {
           // while it is not shown a label changes its place at no cost
           before = ranked.front(), least = best[before];
         } else if (k > 0) {
-          for (const std::size_t j : ranked) {
-            const double changed = best[j] + change;
+          for (std::size_t r = 0; r < n; ++r) {
+            const double changed = ahead[r].best + change;
             if (changed >= least) break;
             // by its length alone it may cost too much
-            if (changed + kWay * way(offered, j, i) >= least) continue;
-            double all = changed + cost_of_way(offered, j, i);
+            const double left = (least - changed) / kWay;
+            if (straight && (here - ahead[r].center).squaredNorm() >= left * left) continue;
+            const std::size_t j = ranked[r];
+            double all = changed + cost_of_way(offered, j, i, least - changed);
             if (all < least && !jumps_.empty()) {
               const double middle = (film(k) + film(k - 1)) / 2, lasting = time_of_way(offered, j, i);
               all += jumping(k, j, i, middle - lasting / 2, middle + lasting / 2);
@@ -384,6 +400,7 @@ class Planner {
   const Taken& taken_;
   double point_, speed_;
   WordKey::Kind kind_;
+  std::vector<double> times_;  // s of the film: of each sample
   std::vector<double> jumps_;  // of each sample each place's cost of jumping there; none: nothing jumps
 };
 
