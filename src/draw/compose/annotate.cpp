@@ -106,9 +106,9 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
       placing_.avoid(tail + off, end + off, 2);
     }
   // words come and go with the arrow: a value is as strong as others while it is there, however small it is;
-  // a name alone says nothing of an arrow that is hardly seen
+  // a name alone says nothing of an arrow that is hardly seen, but for one that is leaving the picture
   const auto [from_grow, full_grow] =
-      around.valued ? std::pair(kSmallest, kFull) : std::pair(kNamedFrom, kNamedFull);
+      around.valued || arrows[0].cut ? std::pair(kSmallest, kFull) : std::pair(kNamedFrom, kNamedFull);
   if (film()) fade(label, (arrows[0].grow - from_grow) / (full_grow - from_grow));
   // those of one that ends within its ball stand where it would leave it; which place they have is chosen for
   // the others
