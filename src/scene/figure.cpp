@@ -42,6 +42,7 @@ class Reader {
     const Node* name = fields.given(key);
     if (!name) return -1;
     const std::vector<int> all = roster_.bodies(name->text(), name->place, complaints_);
+    if (all.size() > 1) tell_one(*name, all.size());
     return all.empty() ? -1 : all.front();
   }
   std::vector<int> bodies(const Fields& fields, const char* key) const {
@@ -58,6 +59,7 @@ class Reader {
   std::optional<draw::Site> site(const Node& node) const {
     const std::vector<sim::End<D>> all = ends(node, roster_, world_, complaints_);
     if (all.empty()) return {};
+    if (all.size() > 1) tell_one(node.is_text() ? node : node.list()[0], all.size());
     draw::Site site{all.front().body};
     site.local.template head<D>() = all.front().local;
     return site;
@@ -144,9 +146,17 @@ class Reader {
       complaints_.add(fields.place(key),
                       fmt::format("'{}': expected {{}} or {{:.2}}, the number of decimals, got \"{}\"", key,
                                   text.substr(typed, text.find('}', typed) - typed + 1)));
-    if (slot && slot->decimals && !valued)
-      complaints_.add(fields.place(key), fmt::format("'{}' has no value to show: {{:.{}}} stands for one",
-                                                     key, *slot->decimals));
+    // in mathematics an empty group may carry a script, as in {}^{14}C
+    const auto script = [&](std::size_t at) {
+      return at < text.size() && (text[at] == '^' || text[at] == '_');
+    };
+    const bool group =
+        slot && !slot->decimals && (script(slot->end) || (slot->begin > 0 && script(slot->begin - 1)));
+    if (slot && !valued && !group)
+      complaints_.add(fields.place(key), fmt::format("'{}' has no value to show: {} stands for one", key,
+                                                     text.substr(slot->begin, slot->end - slot->begin)));
+    if (slot && valued && draw::value_slot(std::string_view(text).substr(slot->end)))
+      complaints_.add(fields.place(key), fmt::format("'{}' shows one value, and has two places for it", key));
     return text;
   }
   static std::optional<draw::Color> color(const Fields& fields) {
@@ -155,6 +165,10 @@ class Reader {
   }
 
  private:
+  void tell_one(const Node& name, std::size_t count) const {
+    complaints_.add(name.place, fmt::format("{} is {} bodies, and a mark is of one: say which",
+                                            scene::quoted(name.text()), count));
+  }
   std::optional<draw::Cue> cue(const Fields& fields, const char* key) const {
     const Node* node = fields.given(key);
     if (!node) return {};

@@ -97,7 +97,11 @@ void refuse_kept_apart(const WhenNames<D>& names, const sim::When<D>& when, cons
   const auto kept = [&](const std::pair<int, int>& pair) {
     for (int k = 0; pair.second >= 0 && k < int(model.joints.size()); ++k) {
       const sim::Joint<D>& joint = model.joints[std::size_t(k)];
-      if (std::minmax(joint.a.body, joint.b.body) != std::minmax(pair.first, pair.second)) continue;
+      // wheels that mesh overlap by their teeth
+      const auto are = [&](int a, int b) { return std::pair<int, int>(std::minmax(a, b)) == pair; };
+      const bool held = are(joint.a.body, joint.b.body) ||
+                        (joint.kind == sim::JointKind::gear && are(joint.a.body, joint.over[0].body));
+      if (!held) continue;
       if (joint.touching || joint.later || joint.kind == sim::JointKind::pulley) continue;
       if (joint.breaks < 1e299 || joint.breaks_torque < 1e299 || parted(k)) continue;
       by = joint.name;
@@ -109,8 +113,8 @@ void refuse_kept_apart(const WhenNames<D>& names, const sim::When<D>& when, cons
   const char* const key = when.on == When::On::touches ? "touches" : "leaves";
   const Node& two = *node.find(key);
   names.complaints.add(
-      two.place, fmt::format("'{}': {} and {} are joined by {}, which lets them through each other; where "
-                             "they are to touch it has touching = true",
+      two.place, fmt::format("'{}': {} and {} are joined by {}, which lets them through each other; "
+                             "give it touching = true",
                              key, scene::quoted(two.list()[0].text()), scene::quoted(two.list()[1].text()),
                              scene::quoted(by)));
 }

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "app/console/exit.h"
+#include "app/film/subtitles.h"
 #include "app/run/origin.h"
+#include "app/run/variation.h"
 
 namespace obscura::app {
 namespace {
@@ -20,6 +22,19 @@ TEST(Shots, TenSecondsHaveTheFramesThatTheRateSays) {
     EXPECT_EQ(shots[0].time, (Rational{0, 1}));
     EXPECT_EQ(shots[frames - 1].time, sim::rational(frames - 1) / fps);
   }
+}
+
+TEST(Subtitles, AnEmptyLineEndsNoCue) {
+  EXPECT_EQ(webvtt({{0, 1, "one\n\nthree"}}),
+            "WEBVTT\n\n00:00:00.000 --> 00:00:01.000\none\n\u00a0\nthree\n");
+}
+
+TEST(Variations, KeysOfOneNameAreToldApart) {
+  const Variations masses({"a.mass=1,2", "b.mass=3,4"});
+  EXPECT_EQ(masses.words(1), "a.mass = 1, b.mass = 4");
+  const Variations ways({"a.velocity.y=0,1", "physics.integrator=rk4"});
+  EXPECT_EQ(ways.words(1), "velocity.y = 1, Runge-Kutta");
+  EXPECT_EQ(ways.keys[0].symbol(false), "v_y");
 }
 
 TEST(Shots, FromIsFilmedAndToIsNot) {

@@ -460,6 +460,23 @@ TEST(Diagnostics, MathematicsThatIsNotWholeIsAnErrorWithItsColumn) {
   refused("[[ball]]\nlabel = '\\frac{1}'", "a.toml:2:9: 'label', column 1: " + half);
 }
 
+TEST(Diagnostics, AValueInALabelHasAQuantityAndOnePlace) {
+  const std::string label = "[[film.label]]\nat = [1, 1]\ntext = ";
+  refused(label + "'E={}'", "a.toml:3:8: 'text' has no value to show: {} stands for one");
+  refused(label + "'E={} and {:.2}'\nquantity = 'energy'",
+          "a.toml:3:8: 'text' shows one value, and has two places for it");
+  EXPECT_NO_THROW(parse(label + "'${}^{14}C$'", "a.toml", {}));
+}
+
+TEST(Diagnostics, AMarkIsOfOneBody) {
+  const std::string copies =
+      "[[ball]]\nname = 'b'\nradius = 0.1\nposition = [1, 1]\ncopies = { count = 3, offset = [1, 0] }\n";
+  refused(copies + "[[film.vector]]\nquantity = 'velocity'\nof = 'b[*]'",
+          "a.toml:8:6: 'b[*]' is 3 bodies, and a mark is of one: say which");
+  refused(copies + "[[film.point]]\nat = 'b[*]'",
+          "a.toml:7:6: 'b[*]' is 3 bodies, and a mark is of one: say which");
+}
+
 TEST(Diagnostics, AnAxisHasOneUnit) {
   refused("[[film.plot]]\nquantity = [\"x\", \"speed\"]\nof = \"a\"\n[[ball]]\nname = \"a\"",
           "a.toml:2:12: 'x' is in m and 'speed' in m/s: an axis has one unit, give each a plot of its own");

@@ -19,7 +19,7 @@ Pieces pieces(Integrator integrator, LimitMet& met, Ratio&& ratio) {
   Pieces all;
   double now = 0;
   step_by_passages(
-      integrator, 0, 1, 7, met, [&] { return ratio(now); },
+      integrator, 0, 1, 7, met, [&](double at) { return ratio(at); },
       [&](double from, double length) { all.emplace_back(from, length), now = from + length; });
   return all;
 }

@@ -58,7 +58,10 @@ sim::Rational impact(const scene::Scene& scene) {
 
 // "0.351 "s"", as mathematics: to the millisecond
 std::string seconds_words(double time) {
-  std::string number = fmt::format("{:.3f}", std::abs(time) < 5e-4 ? 0.0 : time);
+  // three decimals, of times below a hundredth three digits
+  const double size = std::abs(time);
+  const int more = size < 0.01 && size > 1e-12 ? -int(std::floor(std::log10(size))) - 1 : 0;
+  std::string number = fmt::format("{:.{}f}", size > 1e-12 ? time : 0.0, std::max(3, 3 + more));
   while (number.back() == '0') number.pop_back();
   if (number.back() == '.') number.pop_back();
   return number + " \"s\"";
@@ -146,6 +149,9 @@ FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::str
     }
     if (times.empty()) times = {scene.duration / sim::rational(4)};
     std::sort(times.begin(), times.end(), [](auto a, auto b) { return a < b; });
+    if (times.front() < sim::Rational{0, 1})
+      throw UsageError(fmt::format("{}: 'at' of [figure] is {:g} s before the run, which starts at 0 s",
+                                   scene.file, -sim::value(times.front())));
     width_ = options.width.value_or(figure.width ? *figure.width * 72 / 25.4 : kColumn);
     every_ = options.every ? options.every : figure.every;
     wanted = options.columns ? *options.columns : figure.columns;

@@ -437,6 +437,11 @@ int Filming::finish(Progress& progress, const Simulation& simulation, std::int64
   }
   if (store_ && !options_.shard && (whole || simulation.trouble())) store_->remove();
   if (output_.form == Output::Form::frames && whole && !options_.shard && options_.overwrite) clear_longer();
+  // words of the film that lay there before, unless they are someone else's
+  if (std::error_code none; movie() && whole && !options_.shard && scene_.film.titles.captions.empty() &&
+                            fs::is_regular_file(captions_of(output_.path), none))
+    say(stderr, "{}: note: lies beside the film, which has no captions: it is of an earlier one\n",
+        captions_of(output_.path));
   // what was there before it was gone on with is a part of it
   if (movie() && whole && options_.resume && !options_.shard) {
     std::error_code none;

@@ -25,10 +25,11 @@ std::string cue_time(double seconds) {
   return fmt::format("{:02}:{:02}:{:02}.{:03}", ms / 3'600'000, ms / 60'000 % 60, ms / 1000 % 60, ms % 1000);
 }
 
-// text as WebVTT has it: no markup
+// text as WebVTT has it: no markup, and no empty line, which would end the cue
 std::string escaped(const std::string& text) {
   std::string all;
   for (const char c : text) {
+    if (c == '\n' && (all.empty() || all.back() == '\n')) all += "\u00a0";
     if (c == '&')
       all += "&amp;";
     else if (c == '<')

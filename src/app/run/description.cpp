@@ -38,6 +38,8 @@ constexpr double kSoft = 0.02;                // of sqrt(g L): slower is no impa
 constexpr double kSame = 1e-3;                // of the energy: it has not changed
 constexpr double kTurnedOver = 0.5;           // cosine to the axis of the start: it points the other way,
 constexpr double kTurnsAbout = 0.9;           // or is that axis
+constexpr double kStillSpeed = 1e-3,
+                 kStillSpin = 1e-2;  // of the room's height, 1/s; rad/s: slower is no motion
 
 struct Impact {
   double time = 0, speed = 0;  // s, m/s: along the normal, before
@@ -49,7 +51,11 @@ struct Impact {
 class Account {
  public:
   Account(const scene::Scene& scene, const sim::SceneInfo& cast)
-      : scene_(scene), cast_(cast), bodies_(cast.bodies.size()), rest_(cast.bodies.size()) {
+      : scene_(scene),
+        cast_(cast),
+        bodies_(cast.bodies.size()),
+        rest_(cast.bodies.size()),
+        still_(cast.bodies.size()) {
     const double g = cast.gravity.norm();
     soft_ = kSoft * std::sqrt((g > 0 ? g : 9.81) * std::max(cast.scale, 1e-9));
   }
@@ -104,6 +110,7 @@ class Account {
   std::vector<Impact> impacts_;
   std::vector<Extremes> bodies_;
   std::vector<std::optional<double>> rest_;                         // since when
+  std::vector<std::optional<double>> still_;                        // likewise, without motion that shows
   std::vector<std::pair<double, int>> broken_, made_;               // joints
   std::set<int> parted_;                                            // of them those that conditions let go
   std::vector<std::pair<std::string, std::vector<double>>> marks_;  // by their names, in the order of time
@@ -176,10 +183,16 @@ void Account::read(const sim::Snapshot& now) {
     if (it.velocity.norm() > 1.001 * its.fastest)
       its.fastest = it.velocity.norm(), its.when_fastest = now.time;
     if (it.position.y() > its.highest) its.highest = it.position.y(), its.when_highest = now.time;
-    if (!it.at_rest)
+    // the rest is found a while after it has begun, and an observer who moves sees none
+    const bool still = it.velocity.norm() < kStillSpeed * cast_.scale && it.spin.norm() < kStillSpin;
+    if (!still)
+      still_[i].reset();
+    else if (!still_[i])
+      still_[i] = now.time;
+    if (!it.at_rest || !still)
       rest_[i].reset();
     else if (!rest_[i])
-      rest_[i] = now.time;
+      rest_[i] = still_[i];
   }
   follow_turns(now);
   follow_hands(now);

@@ -10,6 +10,7 @@ namespace {
 
 // a rough spell: so long in all, s, and in so many of its steps
 constexpr double kRoughFor = 0.1, kRoughPart = 0.3;
+constexpr double kWild = 0.03;  // of the largest speed
 
 }  // namespace
 
@@ -40,12 +41,11 @@ std::vector<std::string> limit_notes(const sim::Run& run) {
   note(met.substeps, "had bodies meet faster than 4,800 substeps a second follow; a physics.rate above does");
   note(met.passages,
        "had bodies pass each other, or a centre, more closely than the forces were followed: energy may have "
-       "come "
-       "from nowhere; a softening or a higher physics.rate helps");
-  note(met.wild,
-       "had a force on a body change by as much as itself within the step: energy may have come from "
-       "nowhere; a "
-       "higher physics.rate helps");
+       "come from nowhere; a softening or a higher physics.rate helps");
+  if (const sim::WildestStep& it = met.wildest; it.error > kWild * it.pace)
+    note({1, it.step, it.step},
+         "had a force on a body change by as much as itself: energy may have come from nowhere; a higher "
+         "physics.rate helps");
   // what is damped may be rough for a moment
   const double rough = double(met.rough.steps);
   if (rough > kRoughFor * sim::value(run.rate()) &&

@@ -109,10 +109,16 @@ std::vector<std::string> Variations::sets(std::int64_t run, std::vector<std::str
   return sets;
 }
 
+bool Variations::alone(const Variation& key) const {
+  return std::count_if(keys.begin(), keys.end(),
+                       [&](const Variation& other) { return other.name() == key.name(); }) == 1;
+}
+
 std::string Variations::words(std::int64_t run) const {
   const std::vector<std::string> values = (*this)[run];
   std::string text;
-  for (std::size_t k = 0; k < keys.size(); ++k) text += (k ? ", " : "") + keys[k].words(values[k]);
+  for (std::size_t k = 0; k < keys.size(); ++k)
+    text += (k ? ", " : "") + keys[k].words(values[k], !alone(keys[k]));
   return text;
 }
 
@@ -121,11 +127,9 @@ std::string Variations::formula(std::int64_t run) const {
   std::string text;
   for (std::size_t k = 0; k < keys.size(); ++k) {
     const bool number = sim::parse_rational(values[k]).has_value();
-    const bool alone = std::count_if(keys.begin(), keys.end(), [&](const Variation& other) {
-                         return other.name() == keys[k].name();
-                       }) == 1;
+    const bool whose = !alone(keys[k]);
     text += k ? ", " : "";
-    text += number ? keys[k].symbol(!alone) + " = " + values[k] : '"' + keys[k].words(values[k]) + '"';
+    text += number ? keys[k].symbol(whose) + " = " + values[k] : '"' + keys[k].words(values[k], whose) + '"';
   }
   return text;
 }
@@ -138,8 +142,8 @@ std::string Variation::spoken(const std::string& value) {
   return draw::in_words(value);
 }
 
-std::string Variation::words(const std::string& value) const {
-  const std::string key = spoken(name());
+std::string Variation::words(const std::string& value, bool whose) const {
+  const std::string key = spoken(whose ? path : name());
   if (value == "true") return key;
   if (value == "false") return "no " + key;
   const bool word = std::all_of(value.begin(), value.end(),
@@ -149,15 +153,20 @@ std::string Variation::words(const std::string& value) const {
 }
 
 std::string Variation::name() const {
-  const auto dot = path.rfind('.');
+  auto dot = path.rfind('.');
+  // a component, with what it is of
+  if (dot != path.npos && dot > 0 && dot + 2 == path.size() && std::string_view("xyz").find(path.back()) < 3)
+    dot = path.rfind('.', dot - 1);
   return dot == path.npos ? path : path.substr(dot + 1);
 }
 
 std::string Variation::symbol(bool whose) const {
   static constexpr std::pair<std::string_view, const char*> kSymbols[] = {
-      {"angle", "\\theta"}, {"friction", "\\mu"},   {"elasticity", "e"}, {"mass", "m"},
-      {"stiffness", "k"},   {"rest_length", "l_0"}, {"length", "l"},     {"radius", "r"},
-      {"density", "\\rho"}, {"charge", "q"},        {"speed", "v"},      {"static_friction", "\\mu_s"}};
+      {"angle", "\\theta"},  {"friction", "\\mu"},   {"elasticity", "e"}, {"mass", "m"},
+      {"stiffness", "k"},    {"rest_length", "l_0"}, {"length", "l"},     {"radius", "r"},
+      {"density", "\\rho"},  {"charge", "q"},        {"speed", "v"},      {"static_friction", "\\mu_s"},
+      {"position.x", "x"},   {"position.y", "y"},    {"position.z", "z"}, {"velocity.x", "v_x"},
+      {"velocity.y", "v_y"}, {"velocity.z", "v_z"}};
   static constexpr std::string_view kSections[] = {"physics", "room", "contact", "film", "look", "camera"};
   const std::string key = name();
   std::string of = path.substr(0, path.size() > key.size() ? path.size() - key.size() - 1 : 0);

@@ -16,13 +16,14 @@ struct Variation {
   std::string path;                 // "crate.elasticity"
   std::vector<std::string> values;  // as --set takes them
 
-  /// The key alone: "elasticity".
+  /// The key alone: "elasticity", "velocity.y".
   std::string name() const;
   /// The same as mathematics, for an axis: the quantity's letter, `whose` with the name of what has it, or
   /// words.
   std::string symbol(bool whose = true) const;
-  /// For a person: "elasticity = 0.1"; of a key whose values are words the word alone, as "Euler".
-  std::string words(const std::string& value) const;
+  /// For a person: "elasticity = 0.1", `whose` with the name of what has it, "crate.elasticity = 0.1"; of a
+  /// key whose values are words the word alone, as "Euler".
+  std::string words(const std::string& value, bool whose = false) const;
   /// A value for a person: "Euler" for euler, a space for an underscore.
   static std::string spoken(const std::string& value);
   /// A value that is a number or a fraction. Throws UsageError where it is none.
@@ -43,6 +44,8 @@ struct Variations {
   std::vector<std::string> operator[](std::int64_t run) const;
   /// The same as --set takes them, after others.
   std::vector<std::string> sets(std::int64_t run, std::vector<std::string> sets) const;
+  /// Whether no other key has the same name.
+  bool alone(const Variation& key) const;
   /// The same for a person: "elasticity = 0.1, seed = 3".
   std::string words(std::int64_t run) const;
   /// The same as mathematics: "e = 0.1", "\"Euler\"".

@@ -8,6 +8,7 @@
 #include "sim/force/formula.h"
 #include "sim/math/lanes.h"
 #include "sim/model/body_motion.h"
+#include "sim/shape/shape.h"
 
 namespace obscura::sim {
 
@@ -30,6 +31,8 @@ OBSCURA_INLINE std::int64_t passes(double r2, double v2, double A, double far, d
 
 // their h/tau, or 0
 double passage_ratio(double r2, double v2, double A, int twice_n, double h) {
+  const double steep = std::max(1.0, 0.25 * twice_n);  // e
+  A *= steep, v2 *= steep * steep;
   double far = twice_n % 2 == 0 ? 1 : std::sqrt(r2);
   for (int i = 0; i < twice_n / 2 + 1; ++i) far *= r2;
   if (passes(r2, v2, A, far, h) >= 0) return 0;
@@ -78,7 +81,8 @@ template <int D>
 std::optional<PowerLaw> power_law(const Force<D>& force, const Subject<D>& a, const Subject<D>& b,
                                   double scale) {
   constexpr double kDirection[2][3] = {{0.6, 0.8, 0}, {0.48, 0.6, 0.64}};
-  constexpr int kApart = 10;  // the distances differ by 2^10
+  constexpr int kApart = 10;     // the distances differ by 2^10
+  constexpr int kSteepest = 40;  // 2n
   const bool each = force.on == Force<D>::On::each;
   Evaluation evaluation(force.formula->force);
   std::array<double, std::size_t(each_slot::end)> uniform{};
@@ -107,17 +111,25 @@ std::optional<PowerLaw> power_law(const Force<D>& force, const Subject<D>& a, co
   if (!(f[0] > 0 && f[1] < 1e300)) return {};
   // 2^(kApart n) is their ratio
   std::frexp(f[1] / f[0] * (1 + 1e-9), &exponent);
-  const int twice_n = (2 * (exponent - 1) + kApart / 2) / kApart;
+  const int twice_n = std::min((2 * (exponent - 1) + kApart / 2) / kApart, kSteepest);
   if (twice_n < 1) return {};
   double strength = f[0];
   for (int i = 0; i < twice_n / 2; ++i) strength *= r[0];
-  return PowerLaw{twice_n % 2 == 0 ? strength : strength * std::sqrt(r[0]), std::min(twice_n, 24)};
+  return PowerLaw{twice_n % 2 == 0 ? strength : strength * std::sqrt(r[0]), twice_n};
 }
 
 }  // namespace
 
 template <int D>
-ClosePassages<D>::ClosePassages(const Model<D>& model) : model_(model), of_body_(model.bodies.size()) {
+ClosePassages<D>::ClosePassages(const Model<D>& model)
+    : model_(model), drives_(model), may_touch_(model), of_body_(model.bodies.size()) {
+  for (const Body<D>& body : model.bodies) radius_.push_back(bounding_radius(body.shape));
+  for (const Joint<D>& joint : model.joints) {
+    if (joint.a.body >= 0 && joint.b.body >= 0 && joint.kind != JointKind::pulley &&
+        joint.kind != JointKind::gear)
+      joined_.push_back(std::minmax(joint.a.body, joint.b.body));
+  }
+  std::sort(joined_.begin(), joined_.end());
   using Kind = typename Force<D>::Law;
   for (const Force<D>& force : model.forces) {
     const double s2 = force.softening * force.softening, c = std::fabs(force.strength);
@@ -137,7 +149,7 @@ ClosePassages<D>::ClosePassages(const Model<D>& model) : model_(model), of_body_
 
 template <int D>
 void ClosePassages<D>::add(Point a, Point b, const Law& law) {
-  if (a.inverse == 0 && b.inverse == 0) return;
+  if ((a.inverse == 0 && b.inverse == 0) || a.body == b.body) return;
   if (b.body < 0) of_body_[std::size_t(a.body)].push_back(int(pairs_.size()));
   pairs_.push_back({a, b, law});
 }
@@ -177,58 +189,92 @@ typename ClosePassages<D>::Point ClosePassages<D>::point(const Subject<D>& subje
 }
 
 template <int D>
-typename ClosePassages<D>::Place ClosePassages<D>::place(const State<D>& state, const Point& point) const {
+typename ClosePassages<D>::Place ClosePassages<D>::place(const State<D>& state, double t,
+                                                         const Point& point) {
   if (point.body < 0) return {point.local, Vec<D>::Zero()};
-  if (point.local.isZero(0)) return {state.x[std::size_t(point.body)], state.v[std::size_t(point.body)]};
-  const BodyMotion<D> at = body_motion(state, point.body);
+  const int drive = drives_.number(point.body);
+  if (drive < 0 && point.local.isZero(0))
+    return {state.x[std::size_t(point.body)], state.v[std::size_t(point.body)]};
+  const BodyMotion<D> at = drive < 0 ? body_motion(state, point.body) : drives_.at(drive, t).at;
   const Vec<D> arm = at.arm(point.local);
   return {at.x + arm, at.velocity(arm)};
 }
 
+// whether two bodies, or a body and a place, are no passage: they are about to touch, or hold each other
 template <int D>
-double ClosePassages<D>::of_pair(const State<D>& state, double h, const Pair& pair) const {
-  const Place a = place(state, pair.a), b = place(state, pair.b);
-  return passage_ratio((a.x - b.x).squaredNorm() + pair.law.softening2, (a.v - b.v).squaredNorm(),
-                       pair.law.strength * (pair.a.inverse + pair.b.inverse), pair.law.twice, h);
+bool ClosePassages<D>::meet(int a, int b, double r2) const {
+  constexpr double kNear = 1.5;  // of the sum of their radii
+  if (a < 0 || b < 0) return false;
+  if (a == b || std::binary_search(joined_.begin(), joined_.end(), std::pair<int, int>(std::minmax(a, b))))
+    return true;
+  const double near = kNear * (radius_[std::size_t(a)] + radius_[std::size_t(b)]);
+  return model_.collision != Collision::handout && r2 < near * near && may_touch_(a, b);
 }
 
 template <int D>
-double ClosePassages<D>::fastest(const State<D>& state, double h, int body) const {
+double ClosePassages<D>::of_pair(const State<D>& state, double t, double h, const Pair& pair) {
+  const Place a = place(state, t, pair.a), b = place(state, t, pair.b);
+  const double r2 = (a.x - b.x).squaredNorm() + pair.law.softening2;
+  const double ratio =
+      passage_ratio(r2, (a.v - b.v).squaredNorm(), pair.law.strength * (pair.a.inverse + pair.b.inverse),
+                    pair.law.twice, h);
+  return ratio > 0 && meet(pair.a.body, pair.b.body, r2) ? 0 : ratio;
+}
+
+template <int D>
+double ClosePassages<D>::fastest(const State<D>& state, double h, int body) {
   double most = 0;
   for (const int pair : of_body_[std::size_t(body)])
-    most = std::max(most, of_pair(state, h, pairs_[std::size_t(pair)]));
+    most = std::max(most, of_pair(state, 0, h, pairs_[std::size_t(pair)]));
   return most;
 }
 
 template <int D>
-double ClosePassages<D>::fastest(const State<D>& state, double h) {
+double ClosePassages<D>::fastest(const State<D>& state, double t, double h, std::span<const int> member) {
   double most = 0;
-  for (const Pair& pair : pairs_) most = std::max(most, of_pair(state, h, pair));
-  for (const Group& group : groups_) most = std::max(most, of_group(state, h, group));
+  const auto moves = [&](const Point& point) {
+    return point.body >= 0 && member[std::size_t(point.body)] >= 0;
+  };
+  for (const Pair& pair : pairs_) {
+    if (moves(pair.a) || moves(pair.b)) most = std::max(most, of_pair(state, t, h, pair));
+  }
+  for (const Group& group : groups_) most = std::max(most, of_group(state, t, h, group, member));
   return most;
 }
 
-// all pairs, from rows of components; pairs that are far, nearly all, are passed over side by side
+// all pairs with a member, from rows of components; pairs that are far, nearly all, are passed over side by
+// side
 template <int D>
-double ClosePassages<D>::of_group(const State<D>& state, double h, const Group& group) {
+double ClosePassages<D>::of_group(const State<D>& state, double t, double h, const Group& group,
+                                  std::span<const int> member) {
   const std::size_t n = group.points.size();
+  order_.clear();
+  std::size_t members = 0;
+  for (const bool moves : {true, false}) {
+    for (std::size_t i = 0; i < n; ++i)
+      if ((member[std::size_t(group.points[i].body)] >= 0) == moves) order_.push_back(int(i));
+    if (moves) members = order_.size();
+  }
   rows_.resize(n * (2 * D + 2));
   double* const weights = rows_.data() + 2 * D * n;
   double* const inverses = weights + n;
   for (std::size_t i = 0; i < n; ++i) {
-    const Place it = place(state, group.points[i]);
+    const Point& point = group.points[std::size_t(order_[i])];
+    const Place it = place(state, t, point);
     for (std::size_t k = 0; k < std::size_t(D); ++k)
       rows_[k * n + i] = it.x[int(k)], rows_[(D + k) * n + i] = it.v[int(k)];
-    weights[i] = group.points[i].weight, inverses[i] = group.points[i].inverse;
+    weights[i] = point.weight, inverses[i] = point.inverse;
   }
   const double* const rows = rows_.data();
   double most = 0;
-  for (std::size_t i = 0; i + 1 < n; ++i) {
+  for (std::size_t i = 0; i < members; ++i) {
     if (group.law.twice == 4 && !any_near<D>(n, i, rows, group.law.strength, group.law.softening2, h))
       continue;
+    const int body = group.points[std::size_t(order_[i])].body;
     for (std::size_t j = i + 1; j < n; ++j) {
       const Meeting it = meeting<D>(n, i, j, rows, group.law.strength, group.law.softening2);
-      most = std::max(most, passage_ratio(it.r2, it.v2, it.A, group.law.twice, h));
+      const double ratio = passage_ratio(it.r2, it.v2, it.A, group.law.twice, h);
+      if (ratio > most && !meet(body, group.points[std::size_t(order_[j])].body, it.r2)) most = ratio;
     }
   }
   return most;

@@ -33,7 +33,7 @@ inline constexpr double kFarthestTurn = 100;
 /// How far above the ground a body still stands on it, in heights of the room.
 inline constexpr double kOnGround = 1e-6;
 
-/// Errors of velocities below which nothing is told, heights of the room a second.
+/// Errors of velocities below which nothing is told, heights of the room a second; of spins, rad/s.
 inline constexpr double kFaintest = 1e-9;
 
 }  // namespace obscura::sim

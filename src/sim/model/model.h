@@ -326,7 +326,7 @@ struct Force {
 
   /// Whether it has a potential, which may change with the time.
   bool has_potential() const { return formula ? formula->potential : law != Law::function; }
-  /// Whether its formula is that of an attractor, -S m / sqrt(d^2 + s^2).
+  /// Whether its formula is that of an attractor, -S m / sqrt(d^2 + s^2): other formulas have no strength.
   bool attractor() const { return law == Law::formula && center && strength != 0; }
   /// Whether it may turn bodies about their centres.
   bool turns() const { return formula ? formula->torque : law == Law::function; }

@@ -61,13 +61,22 @@ struct LimitMet {
   bool operator==(const LimitMet&) const = default;
 };
 
+/// The step in which a force changed most within it, by Runge-Kutta: its error of a velocity, and the largest
+/// speed of all that the run has seen, m/s.
+struct WildestStep {
+  std::int64_t step = -1;
+  double error = 0, pace = 0;
+
+  bool operator==(const WildestStep&) const = default;
+};
+
 /// All limits that a solver may meet.
 struct LimitsMet {
   LimitMet work;      // the exact solver went on by impulses, to the first order in the step
   LimitMet substeps;  // bodies met faster than the most substeps of the iterative one share out
   LimitMet rough;     // the step was long for forces, by Runge-Kutta: see sim/motion/integrator.h
-  LimitMet wild;      // and forces changed by as much as themselves
   LimitMet passages;  // bodies passed each other more closely than the pieces of a step follow
+  WildestStep wildest;
 
   bool operator==(const LimitsMet&) const = default;
 };

@@ -32,7 +32,7 @@ double ForcedFlight<D>::step(Integrate* integrate, State<D>& state, int first, i
     go_together(body);
     step_by_passages(
         model_.integrator, t, h, state.step, state.limits_met.passages,
-        [&] { return passages_.fastest(state, h, body); },
+        [&](double) { return passages_.fastest(state, h, body); },
         [&](double from, double length) { work += piece(integrate, state, body, 1, from, length, stages); });
   }
   go_together(first + count);

@@ -283,7 +283,7 @@ void ForwardDynamics<D>::step(Integrate* integrate, State<D>& state, double t, d
   if (!passages_.any()) return go(integrate, state, t, h, stages, rates);
   step_by_passages(
       model_.integrator, t, h, state.step, state.limits_met.passages,
-      [&] { return passages_.fastest(state, h); },
+      [&](double now) { return passages_.fastest(state, now, h, member_); },
       [&](double from, double length) { go(integrate, state, from, length, stages, rates); });
 }
 
@@ -314,9 +314,13 @@ void ForwardDynamics<D>::piece(Integrate* integrate, State<D>& state, double t, 
   const int n = int(bodies_.size()), still = n - turning_;
   load(state);
   integrate(rates, t, h, d_, v_, stages);
-  if (model_.integrator == Integrator::rk4 && rates.smooth())
+  if (model_.integrator == Integrator::rk4 && rates.smooth()) {
+    const double least = kFaintest * model_.scale;
+    note_roughness(state.limits_met, state.step, roughness({bodies_.size(), D, D, 1}, h, v_, least, stages));
+    const std::size_t spins = std::size_t(turning_), axes = std::size_t(kAngular<D>);
     note_roughness(state.limits_met, state.step,
-                   roughness({bodies_.size(), D, D, 1}, h, v_, kFaintest * model_.scale, stages));
+                   roughness({spins, axes, axes, 1, D * bodies_.size()}, h, v_, kFaintest, stages), true);
+  }
 
   for (int i = 0; i < n; ++i) {
     state.x[bodies_[i]] += Eigen::Map<const Vec<D>>(d_.data() + D * i);

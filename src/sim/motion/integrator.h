@@ -50,22 +50,29 @@ Integrate midpoint;       ///< order 2
 Integrate euler;          ///< explicit, order 1
 Integrate semi_implicit;  ///< velocity first, order 1; holds the energy of an oscillator
 
-/// Where the velocities of bodies lie among the numbers v of a system: that of body b along axis k at
-/// b * body + k * axis.
+/// Where velocities lie among the numbers v of a system: that of body b along axis k at first + b * body + k
+/// * axis.
 struct VelocityRows {
-  std::size_t bodies, axes, body, axis;
+  std::size_t bodies, axes, body, axis, first = 0;
 };
 
-/// How long the last step of rk4(), of h (s), was for the forces: the largest of all bodies of
-///   h/6 |k1 - k2 - k3 + k4| / (|v| + h |k2| + least)
-/// where k are the stages' accelerations and |.| sums over the axes. `v`: the numbers as they are now;
-/// `least`: m/s, below which errors do not count. Of bodies far slower than the fastest, a part of its size
-/// is added.
-double roughness(const VelocityRows& rows, double h, std::span<const double> v, double least, Stages& stages);
-/// Notes a step that is rough: from 0.001 on, for an oscillator of whose energy Runge-Kutta takes 1e-5 in a
-/// step (h w = .3) nearly half of its steps, for what goes round so all; and one that is wild, in which a
-/// force changed by as much as itself.
-void note_roughness(LimitsMet& met, std::int64_t step, double roughness);
+/// How long the last step of rk4(), of h (s), was for the forces. With k the stages' accelerations and |.|
+/// the sum over the axes, of each body
+///   error = h/6 |k1 - k2 - k3 + k4|      size = |v| + h |k2| + least
+struct Roughness {
+  double ratio =
+      0;  // the largest error / size; of bodies far slower than the fastest a part of its size is added
+  double error = 0;  // the largest error
+  double pace = 0;   // the largest size
+};
+/// `v`: the numbers as they are now. `least`: below this, in units of v, errors do not count.
+Roughness roughness(const VelocityRows& rows, double h, std::span<const double> v, double least,
+                    Stages& stages);
+
+/// Notes a step whose ratio is above 0.001. What goes round is so from h w = .3 on in every step, and an
+/// oscillator in nearly half of them: Runge-Kutta then takes 1e-5 of its energy in a step. And whether it is
+/// the wildest of all, unless the velocities are spins.
+void note_roughness(LimitsMet& met, std::int64_t step, const Roughness& found, bool spins = false);
 
 /// The function behind a name of the model.
 Integrate* integrate(Integrator which);

@@ -19,7 +19,7 @@ void sum(std::size_t n, double h, const double* __restrict k1, const double* __r
   for (std::size_t i = 0; i < n; ++i) y[i] += h * (k1[i] + 2 * (k2[i] + k3[i]) + k4[i]) / 6;
 }
 
-constexpr double kRoughStep = 0.001, kWildStep = 0.05;
+constexpr double kRoughStep = 0.001;
 constexpr double kSlowest = 0.02;  // of the fastest body
 
 }  // namespace
@@ -46,33 +46,38 @@ void rk4(System& system, double t, double h, std::span<double> d, std::span<doub
   sum(n, h, v1.data(), v2.data(), v3.data(), v4.data(), v.data());
 }
 
-double roughness(const VelocityRows& rows, double h, std::span<const double> v, double least,
-                 Stages& stages) {
+Roughness roughness(const VelocityRows& rows, double h, std::span<const double> v, double least,
+                    Stages& stages) {
   const auto k1 = stages.row(3, v.size()), k2 = stages.row(5, v.size());
   const auto k3 = stages.row(7, v.size()), k4 = stages.row(9, v.size());
-  double largest = 0;
-  const auto worst = [&](double more) {
-    double most = 0;
+  const auto look = [&](double more) {
+    Roughness found;
     for (std::size_t body = 0; body < rows.bodies; ++body) {
-      double error = 0, size = 0;
+      double change = 0, size = 0;
       for (std::size_t axis = 0; axis < rows.axes; ++axis) {
-        const std::size_t i = body * rows.body + axis * rows.axis;
-        error += std::fabs((k1[i] - k2[i]) - (k3[i] - k4[i]));
+        const std::size_t i = rows.first + body * rows.body + axis * rows.axis;
+        change += std::fabs((k1[i] - k2[i]) - (k3[i] - k4[i]));
         size += std::fabs(v[i]) + h * std::fabs(k2[i]);
       }
-      if (size > largest) largest = size;
-      if (h * error > 6 * most * (size + more)) most = h * error / (6 * (size + more));
+      const double error = h * change / 6;
+      if (size > found.pace) found.pace = size;
+      if (error > found.error) found.error = error;
+      if (error > found.ratio * (size + more)) found.ratio = error / (size + more);
     }
-    return most;
+    return found;
   };
-  const double most = worst(least);
+  const Roughness found = look(least);
   // what others have just begun to move is told by what it does to them
-  return most > kRoughStep ? worst(least + kSlowest * largest) : most;
+  return found.ratio > kRoughStep ? look(least + kSlowest * found.pace) : found;
 }
 
-void note_roughness(LimitsMet& met, std::int64_t step, double roughness) {
-  if (roughness > kRoughStep) met.rough.note(step);
-  if (roughness > kWildStep) met.wild.note(step);
+void note_roughness(LimitsMet& met, std::int64_t step, const Roughness& found, bool spins) {
+  if (found.ratio > kRoughStep) met.rough.note(step);
+  if (spins) return;
+  WildestStep& wildest = met.wildest;
+  if (found.pace > wildest.pace) wildest.pace = found.pace;
+  if (found.ratio > kRoughStep && found.error > wildest.error)
+    wildest.error = found.error, wildest.step = step;
 }
 
 }  // namespace obscura::sim

@@ -68,7 +68,8 @@ void fields(Visit& visit, State<D>& it) {
   visit(it.step), visit(it.beyond), visit(it.x), visit(it.v), visit(it.turn), visit(it.spin);
   visit(it.grips), visit(it.touches), visit(it.ledger.displacement), visit(it.ledger.impacts);
   visit(it.limits_met.work), visit(it.limits_met.substeps), visit(it.limits_met.rough),
-      visit(it.limits_met.wild), visit(it.limits_met.passages);
+      visit(it.limits_met.wildest.step), visit(it.limits_met.wildest.error),
+      visit(it.limits_met.wildest.pace), visit(it.limits_met.passages);
   visit(it.energy_budget.level), visit(it.energy_budget.amount), visit(it.energy_budget.work),
       visit(it.body_spin), visit(it.blasts), visit(it.chain_states);
   visit(it.intact), visit(it.part_poses), visit(it.bonded), visit(it.contacts), visit(it.frozen),
