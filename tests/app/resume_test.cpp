@@ -266,6 +266,55 @@ TEST_F(Shards, OfPicturesAreThePicturesInOneGo) {
   EXPECT_EQ(all_of(path("a")), bytes);
 }
 
+// as seen from the room, and from a body whose impacts come at other times
+TEST_F(Shards, HaveTheSameOldEndsOfTrails) {
+  const std::string falling = R"(
+title = "Trails"
+duration = 2
+[[ball]]
+name = "a"
+radius = 0.1
+position = [1, 2]
+velocity = [1, 0]
+[[ball]]
+name = "b"
+radius = 0.1
+position = [2, 1.5]
+velocity = [-1.3, 0]
+[[box]]
+name = "floor"
+size = [9, 0.5]
+position = [2, 0]
+fixed = true
+[look]
+trails = 0.7
+[film]
+size = [160, 90]
+shutter = 180
+[room]
+size = [4, 3]
+walls = "none"
+)";
+  for (const std::string& given : {falling, falling + "observer = \"b\"\n"}) {
+    scene(given);
+    for (const char* fps : {"60", "24"}) {
+      const std::string command = std::string("render scene.toml --progress none --fps ") + fps;
+      const std::string pictures = " -o 'a/{frame:03}.png'";
+      ASSERT_EQ(obscura(command + pictures).exit, 0);
+      const std::string bytes = all_of(path("a"));
+      const std::string still = contents(path("a/0" + std::string(fps) + ".png"));
+      fs::remove_all(path("a"));
+      for (const char* shard : {" --shard 1/3", " --shard 2/3", " --shard 3/3"})
+        ASSERT_EQ(obscura(command + pictures + shard).exit, 0);
+      ASSERT_EQ(obscura("join 'a/{frame:03}.png'").exit, 0);
+      EXPECT_EQ(all_of(path("a")), bytes) << fps;
+      fs::remove_all(path("a"));
+      ASSERT_EQ(obscura(command + " --at 1 -o at.png").exit, 0);
+      EXPECT_TRUE(contents(path("at.png")) == still) << fps;
+    }
+  }
+}
+
 TEST_F(Shards, OfAnotherOriginAreNotJoined) {
   scene(kRoom);
   const std::string command = std::string("render scene.toml -o film.mp4") + kSmall;

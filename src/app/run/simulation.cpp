@@ -22,12 +22,10 @@ constexpr double kTrailMargin = 0.1;  // s
 
 sim::Rational microseconds(double seconds) { return sim::rational(std::llround(seconds * 1e6), 1'000'000); }
 
-double last_time(const sim::Track& track) {
-  double t = 0;
-  for (const auto& way : track.points) {
-    if (!way.empty()) t = std::max(t, way.back().time);
-  }
-  return t;
+// whether each of its bodies has a point at or before t
+bool reaches_back_to(double t, const sim::Track& track) {
+  return std::all_of(track.points.begin(), track.points.end(),
+                     [&](const auto& way) { return !way.empty() && way.front().time <= t; });
 }
 
 }  // namespace
@@ -104,8 +102,9 @@ class Simulation::Followed {
   const sim::Run& run() const { return *run_; }
 
   std::int64_t step_before(sim::Rational t) const {
-    // a trail needs a point before its end
-    if (trail_ > 0) t = t - microseconds(std::min(trail_, 1e9) + kTrailMargin);
+    // a trail needs a point before its end, of every body: they come at equal steps
+    const double margin = std::max(kTrailMargin, 2 / sim::value(run_->rate()));
+    if (trail_ > 0) t = t - microseconds(std::min(trail_, 1e9) + margin);
     return sim::floor(t * run_->rate());
   }
 
@@ -176,9 +175,11 @@ class Simulation::Followed {
   void keep_ways(sim::Rational now) {
     if (trail_ <= 0) return;
     ways_.push_back(std::make_shared<const sim::Track>(run_->take_track()));
-    // a way is let go when its last point is older than the longest trail before the next frame
+    // ways are let go that are before one with a point of each body before the end of the longest trail
     const double oldest = std::min(sim::value(now), sim::value(at_)) - trail_;
-    while (ways_.size() > 1 && last_time(*ways_.front()) < oldest) ways_.pop_front();
+    const auto first = std::find_if(ways_.rbegin(), ways_.rend(),
+                                    [&](const auto& track) { return reaches_back_to(oldest, *track); });
+    if (first != ways_.rend()) ways_.erase(ways_.begin(), first.base() - 1);
   }
 
   const Shots& shots_;

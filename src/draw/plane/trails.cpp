@@ -51,8 +51,8 @@ Way way_of(int body, double from, const sim::Snapshot& now, Ways ways, double to
     const Way& points = track->points[at - track->bodies.begin()];
     auto first = std::lower_bound(points.begin(), points.end(), from,
                                   [](const sim::Track::Point& p, double t) { return p.time < t; });
-    // the piece across the border is cut there
-    if (first != points.begin() && first != points.end() && way.empty()) --first;
+    // the piece across the border is cut there: of all points before it the last, wherever the tracks part
+    if (first != points.begin()) way.assign(1, *(first - 1));
     for (; first != points.end() && first->time < now.time; ++first) {
       if (way.empty() || first->time > way.back().time) way.push_back(*first);
     }

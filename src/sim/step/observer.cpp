@@ -72,7 +72,7 @@ class SeenFrom final : public Run {
     if (own.empty()) return track;
     for (auto& way : track.points) {
       for (Track::Point& point : way) {
-        const Frame frame = between(own, point.time);
+        const Frame frame = after(own, point.time);
         frame.velocity(point.velocity, point.place), frame.place(point.place);
         frame.spin(point.spin), frame.orientation(point.orientation);
       }
@@ -92,25 +92,16 @@ class SeenFrom final : public Run {
     return frame;
   }
 
-  // its frame between two points of its way, or just after the last
-  Frame between(const std::vector<Track::Point>& own, double t) const {
-    const auto after = std::lower_bound(own.begin(), own.end(), t,
-                                        [](const Track::Point& p, double time) { return p.time < time; });
-    if (after != own.end() && (after->time == t || after == own.begin()))
-      return frame(after->place, after->velocity, after->spin, after->orientation, 0);
-    const Track::Point& from = *(after - 1);
-    if (after == own.end()) {
-      const double dt = t - from.time;
-      const Orientation<3> turn = turned<3>(from.orientation.coeffs(), AngularVec<3>(from.spin * dt));
-      return frame(from.place + from.velocity * dt, from.velocity, from.spin, Eigen::Quaterniond(turn), 0);
-    }
-    const double h = after->time - from.time, s = (t - from.time) / h, r = 1 - s;
-    const Vec3 x = r * r * (1 + 2 * s) * from.place + s * s * (3 - 2 * s) * after->place +
-                   h * s * r * (r * from.velocity - s * after->velocity);
-    const Orientation<3> turn =
-        sim::between<3>(from.orientation.coeffs(), from.spin, after->orientation.coeffs(), after->spin, h, s);
-    return frame(x, r * from.velocity + s * after->velocity, r * from.spin + s * after->spin,
-                 Eigen::Quaterniond(turn), 0);
+  // its frame just after the last point of its way: what comes later does not count, for it depends on when
+  // the ways are taken
+  Frame after(const std::vector<Track::Point>& own, double t) const {
+    const auto next = std::upper_bound(own.begin(), own.end(), t,
+                                       [](double time, const Track::Point& p) { return time < p.time; });
+    const Track::Point& from = next == own.begin() ? own.front() : *(next - 1);
+    const double dt = t - from.time;
+    if (!(dt > 0)) return frame(from.place, from.velocity, from.spin, from.orientation, 0);
+    const Orientation<3> turn = turned<3>(from.orientation.coeffs(), AngularVec<3>(from.spin * dt));
+    return frame(from.place + from.velocity * dt, from.velocity, from.spin, Eigen::Quaterniond(turn), 0);
   }
 
   static void see(Snapshot& now, const Frame& frame) {
