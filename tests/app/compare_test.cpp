@@ -308,6 +308,38 @@ TEST_F(Verify, WhatWasJustMadeIsTrue) {
   EXPECT_THAT(run.out, HasSubstr("movie: the same, byte by byte"));
 }
 
+// each frame of a card, and of a caption that comes while the film stands still, has the run's one instant
+TEST_F(Verify, FramesOfAFilmThatStandsStillAreTrue) {
+  scene(R"(
+duration = 1
+[room]
+size = [4, 3]
+[[ball]]
+position = [1, 2]
+velocity = [1, 0]
+[film]
+size = [160, 90]
+fps = 10
+speed = [{ time = 0.3, freeze = 0.7 }]
+[[film.card]]
+title = "Half of it"
+time = 0.5
+lasting = 1
+[[film.caption]]
+text = "It waits."
+start = { time = 0.3, after = 0.2 }
+end = 0.6
+)");
+  ASSERT_EQ(obscura("render scene.toml -o 'frames/{frame:03}.png' --progress none").exit, 0);
+  const Outcome verified = shell(OBSCURA_NOT_FOR_EVER OBSCURA_BINARY " verify frames/*.png");
+  EXPECT_EQ(verified.exit, 0) << verified.out << verified.err;
+  EXPECT_EQ(verified.out.find("no longer"), std::string::npos) << verified.out;
+  // a still of the instant is the first of them
+  ASSERT_EQ(obscura("render scene.toml --at 0.3 -o still.png --progress none").exit, 0);
+  EXPECT_EQ(contents(path("still.png")), contents(path("frames/003.png")));
+  EXPECT_EQ(obscura("verify still.png").exit, 0);
+}
+
 TEST_F(Verify, AgainstASceneThatHasChangedItIsTrueNoLonger) {
   still("a.png");
   scene(std::string(text_).replace(text_.find("1.5"), 3, "2.5"));

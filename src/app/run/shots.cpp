@@ -68,6 +68,14 @@ Shots Shots::stills(std::vector<sim::Rational> times, sim::Rational fps, const d
   return shots;
 }
 
+Shots Shots::again(const Shot& shot, sim::Rational fps, const draw::Pace& speed) {
+  Shots shots = still(shot.time, fps, speed);
+  // where a film stands still, several frames are of one instant
+  if (shots.instant(shot.frame) == shot.time)
+    shots.instants_.clear(), shots.ranges_ = {{shot.frame, shot.frame}};
+  return shots;
+}
+
 // the first frame that shows an instant not before `time`
 std::int64_t Shots::first_at(sim::Rational time) const {
   if (speed_.plain()) return sim::ceil(time * fps_);

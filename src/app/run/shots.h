@@ -32,8 +32,10 @@ class Shots {
   static Shots film(sim::Rational duration, sim::Rational fps, const draw::Pace& speed = {});
   /// The one instant `time` of the run, whichever frame it would be nearest to.
   static Shots still(sim::Rational time, sim::Rational fps, const draw::Pace& speed = {});
-  /// Several such, in the order of time.
+  /// Several stills, in the order of time.
   static Shots stills(std::vector<sim::Rational> times, sim::Rational fps, const draw::Pace& speed = {});
+  /// The one shot again: its frame, where that shows its instant, and else its instant alone.
+  static Shots again(const Shot& shot, sim::Rational fps, const draw::Pace& speed = {});
 
   /// Only those that show an instant in [from, to), s of the run. Throws UsageError where none is left.
   void between(sim::Rational from, sim::Rational to);
