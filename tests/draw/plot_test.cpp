@@ -300,6 +300,20 @@ TEST(Plot, NumbersOfTheValuesNeverTouch) {
   }
 }
 
+/// What is not positive has no place on a logarithmic axis, and no line leads across it.
+TEST(Plot, LogarithmicLinesHaveAGapWhereValuesAreNotPositive) {
+  Plot plot = plot_of({3, 2, 1, 0, -1, 1, 2, 0});
+  plot.times = {1, 2, 3, 4, 5, 6, 7, 8};
+  plot.log = true;
+  const PlotArea area = plot_area(plot, kRect, 2);
+  List list;
+  draw_lines(plot, area, list);
+  ASSERT_EQ(list.strokes.size(), 2u);
+  std::vector<std::size_t> nodes;
+  for (const Stroke& stroke : list.strokes) nodes.push_back(std::size_t(stroke.end - stroke.begin));
+  EXPECT_THAT(nodes, testing::ElementsAre(3, 2));
+}
+
 /// What is to be looked at lies over what is quiet.
 TEST(Plot, QuietLinesLieUnderTheOthers) {
   Plot plot = plot_of_many(3, "a");

@@ -357,17 +357,26 @@ void draw_lines(const Plot& plot, const PlotArea& area, List& list, std::optiona
   for (const std::size_t which : painters_order(plot)) {
     const Series& each = plot.lines[which];
     const std::vector<double>& way = along(plot, each);
-    std::vector<Node> nodes;
-    for (std::size_t i = 0; i < way.size() && i < each.values.size(); ++i)
-      if (area.has(way[i], each.values[i]))
-        nodes.push_back({area.at(way[i], each.values[i]), kPlotLine * each.weight * area.point, each.color});
-    if (nodes.empty()) continue;
+    // where it has no place there is a gap
+    std::vector<std::vector<Node>> parts;
+    bool goes_on = false;
+    for (std::size_t i = 0; i < way.size() && i < each.values.size(); ++i) {
+      const bool here = area.has(way[i], each.values[i]);
+      if (here && !goes_on) parts.emplace_back();
+      if (here)
+        parts.back().push_back(
+            {area.at(way[i], each.values[i]), kPlotLine * each.weight * area.point, each.color});
+      goes_on = here;
+    }
+    if (parts.empty()) continue;
     if (number) list.of({Subject::What::chart, *number + int(which)});
-    add_dashed(nodes, each.style, area.point, list);
-    if (!plot.dotted) add_markers_along(nodes, each.style, area.point, list);
-    for (const Node& node : nodes)
-      if (plot.dotted)
-        add_marker(value_marker_of(each.style), node.at, kDotRadius * area.point, each.color, list);
+    for (const std::vector<Node>& nodes : parts) {
+      add_dashed(nodes, each.style, area.point, list);
+      if (!plot.dotted) add_markers_along(nodes, each.style, area.point, list);
+      for (const Node& node : nodes)
+        if (plot.dotted)
+          add_marker(value_marker_of(each.style), node.at, kDotRadius * area.point, each.color, list);
+    }
   }
   if (plot.range) list.unclip();
 }
