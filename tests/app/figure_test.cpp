@@ -584,5 +584,39 @@ TEST_F(Figure, NoFigureOfTheHandoutIsStale) {
   EXPECT_GE(count, 15);
 }
 
+// 500 periods of 0.2 s, each shorter than a 480th of the run
+TEST_F(Figure, AFastOscillationIsABandAndNoSlowOne) {
+  scene(R"(
+duration = 100
+[room]
+size = [4, 3]
+gravity = [0, 0]
+[[particle]]
+name = "b"
+position = [2.5, 1.5]
+mass = 1
+[[spring]]
+between = [[1, 1.5], "b"]
+rest_length = 1
+stiffness = 986.96044
+[figure]
+room = false
+[[figure.plot]]
+quantity = ["x"]
+of = "b"
+)");
+  ASSERT_EQ(obscura("figure scene.toml -o band.png").exit, 0);
+  const media::Image image = media::read_png(path("band.png")).image;
+  // in each column right of the axis, within what the line spans, most of the rows have its ink
+  int full = 0, columns = 0;
+  for (int x = image.width / 4; x < image.width * 3 / 4; ++x, ++columns) {
+    int inked = 0;
+    for (int y = 0; y < image.height; ++y)
+      inked += image.pixels[std::size_t(4 * (y * image.width + x))] < 200;
+    full += inked > image.height / 2;
+  }
+  EXPECT_GT(full, 0.9 * columns);
+}
+
 }  // namespace
 }  // namespace obscura::app

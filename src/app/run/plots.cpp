@@ -28,6 +28,10 @@ namespace {
 constexpr std::int64_t kPoints = 480;   // of a line
 constexpr std::int64_t kFewSteps = 4;   // fewer steps than points by so much: steps are shown
 constexpr std::int64_t kPixels = 1920;  // of a line in a film
+// what a line would leave out is looked for at more instants: at so many, where it is so far from what the
+// line spans between two points (of its range), in so many of its parts; points nearer to each other are one
+constexpr std::int64_t kLooks = 30720;
+constexpr double kUnseen = 0.03, kOften = 0.1, kOnePoint = 0.01;
 
 bool is_quiet(const draw::Look& look, int body) {
   return std::size_t(body) < look.bodies.size() && look.bodies[std::size_t(body)].quiet;
@@ -45,20 +49,98 @@ void add(const sim::SceneInfo& cast, const sim::Snapshot& now, const draw::Measu
 
 // the instants of a run from which a chart is made: ends of steps, which cost nothing extra; for another
 // program's run its rows
-std::vector<sim::Rational> beats(const scene::Scene& scene, sim::Rational rate) {
+std::vector<sim::Rational> beats(const scene::Scene& scene, sim::Rational rate, std::int64_t most = kPixels) {
   std::vector<sim::Rational> times;
   if (scene.trajectory) {
     const std::vector<double>& rows = scene.trajectory->times;
-    const std::size_t stride = rows.size() / std::size_t(kPixels) + 1;
+    const std::size_t stride = rows.size() / std::size_t(most) + 1;
     for (std::size_t i = 0; i < rows.size(); i += stride)
       if (const auto exact = sim::from_double(rows[i]); exact && *exact <= scene.duration)
         times.push_back(*exact);
     return times;
   }
-  const std::int64_t steps = sim::floor(scene.duration * rate), stride = steps / kPixels + 1;
+  const std::int64_t steps = sim::floor(scene.duration * rate), stride = steps / most + 1;
   for (std::int64_t k = 0; k <= steps; k += stride) times.push_back(sim::rational(k) / rate);
   if (times.back() < scene.duration) times.push_back(scene.duration);
   return times;
+}
+
+double range_of(const std::vector<double>& a, const std::vector<double>& b) {
+  double low = 1e300, high = -1e300;
+  for (const std::vector<double>* all : {&a, &b})
+    for (const double x : *all) low = std::min(low, x), high = std::max(high, x);
+  return high - low;
+}
+
+// Where a plot's points are too far apart for what it shows, as of an oscillation that is faster than they
+// are, it takes more of those between, `looks`: over time the least and the largest value of each part, which
+// is then a band; against a quantity all that are not one point.
+void refine(const draw::Plot& looks, draw::Plot& plot) {
+  struct Course {
+    const std::vector<double>*points, *looks;
+    double range;
+  };
+  std::vector<Course> courses;
+  bool against = false;
+  for (std::size_t k = 0; k < plot.lines.size(); ++k) {
+    const draw::Series &line = plot.lines[k], &look = looks.lines[k];
+    courses.push_back({&line.values, &look.values, range_of(line.values, look.values)});
+    if (line.along.empty()) continue;
+    against = true;
+    courses.push_back({&line.along, &look.along, range_of(line.along, look.along)});
+  }
+
+  // the looks of a part, after point i and before the next
+  const std::size_t parts = std::max<std::size_t>(plot.times.size(), 1) - 1;
+  std::vector<std::size_t> first;
+  for (const double t : plot.times)
+    first.push_back(
+        std::size_t(std::upper_bound(looks.times.begin(), looks.times.end(), t) - looks.times.begin()));
+  const auto unseen = [&](const Course& of, std::size_t i) {
+    const auto [low, high] = std::minmax((*of.points)[i], (*of.points)[i + 1]);
+    for (std::size_t j = first[i]; j < first[i + 1]; ++j)
+      if (std::max((*of.looks)[j] - high, low - (*of.looks)[j]) > kUnseen * of.range) return true;
+    return false;
+  };
+  std::size_t coarse = 0;
+  for (std::size_t i = 0; i < parts; ++i)
+    coarse += std::any_of(courses.begin(), courses.end(), [&](const Course& of) { return unseen(of, i); });
+  if (!(double(coarse) > kOften * double(parts))) return;
+
+  draw::Plot all = plot;
+  const auto take = [&](const draw::Plot& from, std::size_t at) {
+    all.times.push_back(from.times[at]);
+    for (std::size_t k = 0; k < all.lines.size(); ++k) {
+      all.lines[k].values.push_back(from.lines[k].values[at]);
+      if (against) all.lines[k].along.push_back(from.lines[k].along[at]);
+    }
+  };
+  all.times.clear();
+  for (draw::Series& line : all.lines) line.values.clear(), line.along.clear();
+  for (std::size_t i = 0; i <= parts; ++i) {
+    take(plot, i);
+    if (i == parts) break;
+    std::vector<std::size_t> chosen;
+    for (std::size_t j = first[i]; j < first[i + 1]; ++j) {
+      const bool far = std::any_of(courses.begin(), courses.end(), [&](const Course& of) {
+        const double last = chosen.empty() ? (*of.points)[i] : (*of.looks)[chosen.back()];
+        return std::abs((*of.looks)[j] - last) > kOnePoint * of.range;
+      });
+      if (against && far) chosen.push_back(j);
+    }
+    for (const Course& of : courses) {
+      if (against || first[i] == first[i + 1]) continue;
+      const auto least = std::minmax_element(of.looks->begin() + std::ptrdiff_t(first[i]),
+                                             of.looks->begin() + std::ptrdiff_t(first[i + 1]));
+      for (const auto& end : {least.first, least.second})
+        chosen.push_back(std::size_t(end - of.looks->begin()));
+    }
+    std::sort(chosen.begin(), chosen.end());
+    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+    for (const std::size_t j : chosen)
+      if (looks.times[j] < plot.times[i + 1]) take(looks, j);
+  }
+  plot = std::move(all);
 }
 
 // whether a camera of it shows all that the run reaches
@@ -170,11 +252,21 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
       run->heed(interrupted);
       bool touched = false;
       plot = empty;
+      draw::Plot looks = empty;
+      const std::int64_t steps = sim::floor((wanted.to - wanted.from) * run->rate()),
+                         stride = steps / kLooks + 1;
+      std::int64_t look = sim::ceil(wanted.from * run->rate()) + 1;
       for (std::int64_t i = 0; i <= many; ++i) {
-        const sim::Snapshot now = moment(*run, i < many ? instant(i) : wanted.to, scene);
+        const sim::Rational t = i < many ? instant(i) : wanted.to;
+        // ends of steps on the way; another program's run has its rows alone
+        for (; i > 0 && !scene.trajectory && sim::rational(look) / run->rate() < t; look += stride)
+          add(run->scene_info(), moment(*run, sim::rational(look) / run->rate(), scene), wanted, lines,
+              looks);
+        const sim::Snapshot now = moment(*run, t, scene);
         touched = touched || !now.contacts.empty();
         add(run->scene_info(), now, wanted, lines, plot);
       }
+      refine(looks, plot);
       return touched;
     };
     // few steps that nothing interrupts go from step to step: parts of steps, which a scheme of low order
@@ -232,12 +324,14 @@ struct Watched {
 };
 
 Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
-              const std::vector<sim::Rational>& times, const draw::Palette& colours) {
+              const std::vector<sim::Rational>& times, const std::vector<sim::Rational>& looks,
+              const draw::Palette& colours) {
   const draw::Marks& marks = scene.film.marks;
   const auto run = scene.shown_run();
   Watched watched;
   watched.cast = run->scene_info();
   std::vector<std::vector<draw::Measured::Line>> lines;
+  std::vector<draw::Plot> looked;
   if (!wanted.empty()) {
     const draw::Illustrator artist = depictor(scene, {});
     for (const draw::Chart& each : wanted) {
@@ -247,6 +341,7 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
           [&](int body) { return is_quiet(artist.look(), body); }));
       lines.push_back(each.lines());
     }
+    looked = watched.plots;
   }
   run->heed(interrupted);
   std::vector<int> traced;
@@ -257,9 +352,11 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
 
   // the instants of ghosts among the others, and those at which the film stands still; of another program's
   // run the nearest row
-  constexpr int kAxis = -1, kStill = -2;
+  constexpr int kAxis = -1, kStill = -2, kLook = -3;
   std::vector<std::pair<sim::Rational, int>> instants;
   for (const sim::Rational t : times) instants.emplace_back(t, kAxis);
+  for (const sim::Rational t : looks)
+    if (!std::binary_search(times.begin(), times.end(), t)) instants.emplace_back(t, kLook);
   const auto more = [&](sim::Rational t, int what) {
     const auto next = std::lower_bound(times.begin(), times.end(), t);
     if (scene.trajectory) t = next == times.end() ? times.back() : *next;
@@ -288,6 +385,11 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
     auto& now = std::get<sim::Snapshot>(outcome);
     if (ghost >= 0) {
       found.ghosts[std::size_t(ghost)] = std::move(now);
+      continue;
+    }
+    if (ghost == kLook) {
+      for (std::size_t i = 0; i < wanted.size() && !diverges && !run->divergence(); ++i)
+        add(watched.cast, now, wanted[i], lines[i], looked[i]);
       continue;
     }
     // axes and arrows are made for what a run does before it diverges
@@ -330,6 +432,7 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
     }
     next = found.films.back() + stride;
   }
+  for (std::size_t i = 0; i < wanted.size() && !looks.empty(); ++i) refine(looked[i], watched.plots[i]);
   if (!traced.empty()) found.track = std::make_shared<const sim::Track>(run->take_track());
   return watched;
 }
@@ -441,13 +544,16 @@ Ahead ahead(const scene::Scene& scene) {
   if (scene.dimension() == 3) colours.ground = colours.room;  // as the page in space
   const sim::Rational rate = std::visit([](const auto& world) { return world.model.rate; }, scene.world);
   const std::vector<sim::Rational> times = beats(scene, rate);
+  // several runs share the instants of their plots
+  std::vector<sim::Rational> looks;
+  if (!wanted.empty() && runs.empty() && !scene.trajectory) looks = beats(scene, rate, kLooks);
   std::vector<Watched> watched;
   // words that stand still need no run
   const bool still = scene.film.marks.empty() || (runs.empty() && scene.film.marks.fixed());
   const bool needed = !wanted.empty() || !still || fitted;
-  if (runs.empty() && needed) watched.push_back(watch(scene, wanted, times, colours));
+  if (runs.empty() && needed) watched.push_back(watch(scene, wanted, times, looks, colours));
   for (const Ahead::Run& run : runs)
-    if (needed) watched.push_back(watch(run.scene, wanted, times, colours));
+    if (needed) watched.push_back(watch(run.scene, wanted, times, {}, colours));
   if (!runs.empty() && needed) join_plots(runs, watched);
 
   Ahead all;
