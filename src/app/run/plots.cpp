@@ -280,6 +280,9 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
       const sim::Rational stride = (wanted.to - wanted.from) / sim::rational(kPoints);
       draw_at(kPoints, [&](std::int64_t i) { return wanted.from + sim::rational(i) * stride; });
     }
+    // variants of a scene are put into one plot, each with the instants of its own run
+    for (draw::Series& line : plot.lines)
+      if (line.along.empty()) line.along = plot.times;
     if (wanted.against.empty())
       plot.marks = marks;
     else
