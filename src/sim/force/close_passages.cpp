@@ -1,5 +1,6 @@
 #include "sim/force/close_passages.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
