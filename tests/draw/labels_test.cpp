@@ -205,6 +205,35 @@ TEST(Labels, OfAnArrowThatGoesRoundKeepOffTheOthers) {
   EXPECT_LE(unseen, 4) << "of " << ahead.moments.size();
 }
 
+/// The farthest that the words `begins` go in a frame as seen from body 0, page units, in three seconds of a
+/// run that at(time) tells. see(text, projection, now) is called for each frame.
+template <class At, class See>
+double fastest_of_words(const Made& made, const Marks& marks, const Scales& scales, const char* begins,
+                        At&& at, See&& see) {
+  RunAhead ahead;
+  for (int k = 0; k <= 45; ++k) ahead.moments.push_back(at(k / 15.0)), ahead.films.push_back(k / 15.0);
+  const Illustrator artist = made.depictor();
+  const Annotations annotations(marks, artist, ahead, scales, 60, 0);
+  std::optional<Point> last;
+  double fastest = 0;
+  for (int n = 0; n <= 180; ++n) {
+    const sim::Snapshot now = at(n / 60.0);
+    const Projection projection = artist.projection(0, now);
+    List list;
+    annotations.draw(0, projection, now, now.time, list);
+    const Text* text = said(list, begins);
+    if (!text) {
+      ADD_FAILURE() << "no words in frame " << n;
+      return fastest;
+    }
+    const Point beside = text->at - projection.page(now.bodies[0].position);
+    if (last) fastest = std::max(fastest, (beside - *last).norm());
+    last = beside;
+    see(*text, projection, now);
+  }
+  return fastest;
+}
+
 /// The words of an arrow that flips in an instant, as the velocity of a ball that bounces, do not jump with
 /// it, nor lie on it.
 TEST(Labels, OfAnArrowThatFlipsDoNotJump) {
@@ -223,25 +252,13 @@ TEST(Labels, OfAnArrowThatFlipsDoNotJump) {
       now.bodies[0].velocity = time < flipped ? sim::Vec3(after.x(), -after.y(), 0) : after;
       return now;
     };
-    RunAhead ahead;
-    for (int k = 0; k <= 45; ++k) ahead.moments.push_back(at(k / 15.0)), ahead.films.push_back(k / 15.0);
-    const Illustrator artist = made.depictor();
-    const Annotations annotations(marks, artist, ahead, {.velocity = 0.8}, 60, 0);
-    std::optional<Point> last;
-    double fastest = 0, over = 0;
-    for (int n = 0; n <= 180; ++n) {
-      const sim::Snapshot now = at(n / 60.0);
-      const Projection projection = artist.projection(0, now);
-      List list;
-      annotations.draw(0, projection, now, now.time, list);
-      const Text* text = said(list, "v");
-      ASSERT_TRUE(text) << n;
-      const sim::Vec3& center = now.bodies[0].position;
-      const Point tail = projection.page(center), beside = text->at - tail;
-      over = std::max(over, covered(*text, tail, projection.page(center + 0.8 * now.bodies[0].velocity)));
-      if (last) fastest = std::max(fastest, (beside - *last).norm());
-      last = beside;
-    }
+    double over = 0;
+    const double fastest = fastest_of_words(
+        made, marks, {.velocity = 0.8}, "v", at,
+        [&](const Text& text, const Projection& projection, const sim::Snapshot& now) {
+          const sim::Vec3 &center = now.bodies[0].position, tip = center + 0.8 * now.bodies[0].velocity;
+          over = std::max(over, covered(text, projection.page(center), projection.page(tip)));
+        });
     EXPECT_LT(fastest, 2) << after.transpose();
     EXPECT_LT(over, 3) << after.transpose();
   }
@@ -268,23 +285,7 @@ TEST(Labels, OfAnArrowThatChangesInAnInstantDoNotJump) {
       now.bodies[0].drag = {0, since < 0 ? before : blow > 0 && since < 0.02 ? blow : after, 0};
       return now;
     };
-    RunAhead ahead;
-    for (int k = 0; k <= 45; ++k) ahead.moments.push_back(at(k / 15.0)), ahead.films.push_back(k / 15.0);
-    const Illustrator artist = made.depictor();
-    const Annotations annotations(marks, artist, ahead, {.force = 1}, 60, 0);
-    std::optional<Point> last;
-    double fastest = 0;
-    for (int n = 0; n <= 180; ++n) {
-      const sim::Snapshot now = at(n / 60.0);
-      const Projection projection = artist.projection(0, now);
-      List list;
-      annotations.draw(0, projection, now, now.time, list);
-      const Text* text = said(list, "D");
-      ASSERT_TRUE(text) << n;
-      const Point beside = text->at - projection.page(now.bodies[0].position);
-      if (last) fastest = std::max(fastest, (beside - *last).norm());
-      last = beside;
-    }
+    const double fastest = fastest_of_words(made, marks, {.force = 1}, "D", at, [](auto&&...) {});
     EXPECT_LT(fastest, 2) << before << " to " << after << " by " << blow;
   }
 }

@@ -183,7 +183,7 @@ void Account::read(const sim::Snapshot& now) {
     if (it.velocity.norm() > 1.001 * its.fastest)
       its.fastest = it.velocity.norm(), its.when_fastest = now.time;
     if (it.position.y() > its.highest) its.highest = it.position.y(), its.when_highest = now.time;
-    // the rest is found a while after it has begun, and an observer who moves sees none
+    // the solver finds rest only after a while, and a body at rest moves where the observer moves
     const bool still = it.velocity.norm() < kStillSpeed * cast_.scale && it.spin.norm() < kStillSpin;
     if (!still)
       still_[i].reset();
