@@ -13,6 +13,7 @@
 #include "scene/error.h"
 #include "scene/scene.h"
 #include "scene/text_run.h"
+#include "sim/force/close_passages.h"
 #include "sim/step/run.h"
 
 namespace obscura::scene {
@@ -160,16 +161,21 @@ TEST(Forces, ACometPassesASunThatIsMoved) {
   }
 }
 
-// charges whose force would take them through each other in a step are left to contact, which holds them
-TEST(Forces, ChargesThatTouchRest) {
-  const TextRun run(
-      open_room("coulomb = 9e9") +
-          "[[ball]]\nradius = 0.04\nelasticity = 0\nposition = [0, 0]\ncharge = 1e-4\n[[ball]]\n"
-          "radius = 0.04\nelasticity = 0\nposition = [0.08, 0]\ncharge = -1e-4\n",
-      {"physics.solver=direct"});
-  const sim::Snapshot now = run.at(0.5);
-  EXPECT_NEAR((now.bodies[1].position - now.bodies[0].position).norm(), 0.08, 1e-6);
-  EXPECT_EQ(run.run->limits_met().passages.steps, 0);
+// two that may touch are left to contact when they are near each other; points pass however near they are
+TEST(Forces, WhatMayTouchIsNoPassageWhenItIsNear) {
+  const auto fastest = [](const std::string& body, const char* x) {
+    const std::string world = open_room("coulomb = 9e9") + body + "position = [0, 0]\ncharge = 1e-4\n" +
+                              body + "position = [" + x + ", 0]\ncharge = -1e-4\n";
+    const sim::World<2> made = parse(world, "a.toml", {}).plane();
+    sim::ClosePassages<2> passages(made.model);
+    return passages.fastest(made.state, 0, 1.0 / 600, std::vector<int>{0, 1});
+  };
+  const std::string ball = "[[ball]]\nradius = 0.04\nmass = 1\n", point = "[[particle]]\n";
+  EXPECT_EQ(fastest(ball, "0.08"), 0);
+  // tau^2 = r/a, a = 2 k q^2 / (m r^2)
+  for (const std::string& body : {ball, point})
+    EXPECT_NEAR(fastest(body, "0.2"), std::sqrt(2 * 90 / (0.2 * 0.2 * 0.2)) / 600, 1e-12) << body;
+  EXPECT_NEAR(fastest(point, "0.08"), std::sqrt(2 * 90 / (0.08 * 0.08 * 0.08)) / 600, 1e-12);
 }
 
 // two that one joint holds never pass each other, however strongly they pull
