@@ -399,6 +399,7 @@ std::vector<draw::Caption> captions(const Node& top, const Seating<D>& roster, c
                                     const draw::Pace& speed, Diagnostics& complaints) {
   const Reader<D> read(roster, world, complaints, speed);
   const Fields fields = Fields::of(top, "film");
+  const sim::Rational duration = Fields(top, "").rational("duration");
   std::vector<draw::Caption> all;
   for (const Node& node : tables(fields, "caption")) {
     const Fields its(node, "film.caption");
@@ -409,6 +410,12 @@ std::vector<draw::Caption> captions(const Node& top, const Seating<D>& roster, c
       const auto exact = sim::from_double(cue.time);
       return exact ? sim::value(speed.film(*exact)) : cue.time;
     };
+    const double ends = sim::value(duration);
+    // what waits for a mark that does not come is silent
+    if (caption.shown.start && caption.shown.start->time > ends && caption.shown.start->time < double(kNever))
+      complaints.add(its.place("start"),
+                     fmt::format("a caption from {:g} s on is never shown: the scene ends at {:g} s",
+                                 caption.shown.start->time, ends));
     if (caption.shown.start) caption.begin = film(*caption.shown.start);
     if (caption.shown.end) caption.end = film(*caption.shown.end);
     all.push_back(std::move(caption));

@@ -525,7 +525,7 @@ std::vector<Key> rows() {
        .doc = "How springs are drawn; `auto` draws a net of many springs as lines, others as coils.", .example = "\"coils\""},
       {.path = "look.caption", .form = boolean, .fallback = "true", .doc = "Title, subtitle and time above the room.",
        .example = "false"},
-      {.path = "look.clock", .form = boolean, .fallback = "true", .doc = "The time, at the right of the caption.",
+      {.path = "look.clock", .form = boolean, .fallback = "true", .doc = "The time, at the right of the caption; of a run of less than 0.2 s in ms, µs, ns, ps or fs.",
        .example = "false"},
       {.path = "look.type_scale", .form = number, .fallback = "1", .range = {0.5, 3}, .doc = "How much larger all type is, and above 1 the arrows that a film names, too: for a large hall, or a small screen.", .example = "1.2"},
       {.path = "look.decimal", .form = choice, .fallback = "\".\"", .choices = {".", ","}, .doc = "The decimal mark of numbers on the picture.", .example = "\",\""},

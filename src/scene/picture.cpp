@@ -55,6 +55,7 @@ void look(const Node& top, const NameTable& roster, draw::Look& look, Diagnostic
   if (const Node* scale = fields.given("force_scale")) look.force_scale = scale->number();
   look.caption = fields.flag("caption");
   look.clock = fields.flag("clock");
+  look.duration = sim::value(words.rational("duration"));
   look.badge = Fields::of(top, "film").flag("badge");
   look.hatching = fields.flag("hatching");
   look.axes = fields.flag("axes");

@@ -12,7 +12,6 @@ namespace obscura::scene {
 
 namespace {
 
-constexpr std::int64_t kNever = 1'000'000;  // s
 
 bool names_mark(const Node& node) {
   if (!node.is_text() || node.text().empty()) return false;
@@ -127,6 +126,13 @@ void cut_at(Node& top, sim::Rational stop) {
     top.table().insert(top.table().begin(), Entry{"duration", top.place, std::move(node)});
   }
   Node* film = top.find("film");
+  Node* captions = film && film->is_table() ? film->find("caption") : nullptr;
+  if (captions && captions->is_list())
+    std::erase_if(captions->list(), [&](Node& each) {
+      Node* start = each.find("start");
+      if (start && start->is_table()) start = start->find("time");
+      return start && stop < exact(*start);
+    });
   for (const char* key : {"speed", "card"}) {
     Node* all = film && film->is_table() ? film->find(key) : nullptr;
     if (!all || !all->is_list()) continue;

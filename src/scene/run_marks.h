@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,6 +11,9 @@
 #include "sim/math/rational.h"
 
 namespace obscura::scene {
+
+/// When a mark is that the run does not come to, s.
+inline constexpr std::int64_t kNever = 1'000'000;
 
 /// What events say about a run: the instants that they mark, and when they stop it. s, as times of a scene
 /// are kept: the first microsecond at which it has happened.

@@ -21,13 +21,19 @@ bool WhenNames<D>::is_body(const std::string& text) const {
 template <int D>
 std::vector<int> WhenNames<D>::side(const Node& node) const {
   const std::string& text = node.text();
+  const int walls = int(model.walls.size());
+  const Node* own = Fields::of(top, "room").given("walls");
+  const int listed = own && own->is_list() ? int(own->list().size()) : 0;
+  for (int k = 0; k < std::min(6, walls - listed); ++k) {
+    if (text != kWalls[k]) continue;
+    if (!is_body(text)) return {-1 - k};
+    complaints.add(node.place,
+                   fmt::format("{} is a body, and a wall of the room, which is wall[{}] too: give "
+                               "the body another name",
+                               scene::quoted(text), k));
+    return {};
+  }
   if (!is_body(text)) {
-    const int walls = int(model.walls.size());
-    const Fields room = Fields::of(top, "room");
-    const Node* own = room.given("walls");
-    const int listed = own && own->is_list() ? int(own->list().size()) : 0;
-    for (int k = 0; k < std::min(6, walls - listed); ++k)
-      if (text == kWalls[k]) return {-1 - k};
     if (const auto its = reference(text); its && its->bracketed && its->name == "wall") {
       const auto which = range(its->which, walls);
       if (!which) {

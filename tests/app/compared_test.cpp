@@ -191,6 +191,14 @@ TEST_F(Compared, ShardsAndResumedFilmsAreTheFilm) {
   EXPECT_EQ(media::read_png(path("a.png")).image, media::read_png(path("b/15.png")).image);
 }
 
+TEST_F(Compared, AFrameIsDescribedRunByRunInTheScenesNumbers) {
+  scene(std::string(kSpring) + "[look]\ndecimal = \",\"\n[film]\nvary = \"ball.mass=0.5,2\"\n");
+  ASSERT_EQ(obscura(std::string("render scene.toml --at 1 -o a.png") + kSmallPanels).exit, 0);
+  const std::string said = media::read_png(path("a.png")).tags["Description"];
+  EXPECT_THAT(said, HasSubstr("A spring. mass = 0,5: One particle and one spring at 1 s."));
+  EXPECT_THAT(said, HasSubstr(" mass = 2: One particle"));
+}
+
 TEST_F(Compared, WhatCannotBeIsSaid) {
   const auto told = [&](const std::string& film) {
     scene(std::string(kSpring) + "[film]\n" + film);

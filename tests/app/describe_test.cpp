@@ -240,6 +240,22 @@ TEST_F(Describe, TellsTheSpeedOfAnImpactInRoomsOfEverySize) {
   }
 }
 
+TEST_F(Describe, SaysNothingOfWhatComesAfterAStop) {
+  const std::string run_of_a_second =
+      "duration = 3\n[room]\nsize = [4, 3]\n[[ball]]\nname = \"ball\"\nposition = [2, 1]\n"
+      "[[film.caption]]\ntext = \"First.\"\nstart = 0.5\n[[film.caption]]\ntext = \"Second.\"\nstart = 2\n";
+  scene(run_of_a_second + "[[when]]\ntime = 1\ndo = [{ stop = true }]\n");
+  const Outcome run = obscura("describe scene.toml");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("\"First.\""));
+  EXPECT_THAT(run.out, Not(HasSubstr("Second.")));
+  // without the stop it is a mistake to say something after the end
+  scene(run_of_a_second + "[[film.caption]]\ntext = \"Third.\"\nstart = 4\n");
+  const Outcome late = obscura("check scene.toml");
+  EXPECT_EQ(late.exit, 3);
+  EXPECT_THAT(late.err, HasSubstr("a caption from 4 s on is never shown: the scene ends at 3 s"));
+}
+
 TEST_F(Describe, SaysNothingOfWhatDoesNotCome) {
   scene(
       "duration = 1\n[room]\nsize = [4, 3]\ngravity = [0, 0]\n[[ball]]\nname = \"hub\"\nradius = 0.2\n"

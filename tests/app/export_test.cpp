@@ -190,5 +190,14 @@ TEST_F(Export, APlaneSceneHasDepthAndWhatRestsNoChannel) {
   EXPECT_EQ(obscura("export scene.toml -o run.gltf").exit, 2);
 }
 
+TEST_F(Export, EndsWhereAnEventStopsTheRun) {
+  scene(
+      "duration = 2\n[room]\nsize = [4, 3]\n[[ball]]\nname = \"ball\"\nposition = [2, 2]\n[[when]]\n"
+      "time = 0.5\ndo = [{ stop = true }]\n");
+  ASSERT_EQ(obscura("export scene.toml").exit, 0);
+  const Read glb = read_glb(path("scene.glb"));
+  EXPECT_EQ(glb.channel(glb.node("ball"), "translation").first.back()[0], 0.5f);
+}
+
 }  // namespace
 }  // namespace obscura::app

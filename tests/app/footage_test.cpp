@@ -87,6 +87,25 @@ TEST_F(Footage, FramesFallOnRowsOrBetweenThemOnlyIfTold) {
   EXPECT_EQ(obscura("render scene.toml --interpolate -o c.mp4").exit, 2);
 }
 
+// contacts, joints and explosions are the steps', not the states'
+TEST_F(Footage, ShowsNoForcesThatAStateDoesNotTell) {
+  const std::string marks =
+      "[[film.vector]]\nquantity = \"weight\"\nof = \"crate\"\nlabel = \"W = {}\"\n"
+      "[[film.vector]]\nquantity = \"normal_force\"\nof = \"crate\"\nlabel = \"N = {}\"\n"
+      "[[film.label]]\nat = [2, 2]\ntext = \"a = {}\"\nquantity = \"acceleration\"\nof = \"crate\"\n"
+      "[[film.plot]]\nquantity = [\"friction\"]\nof = \"crate\"\n";
+  scene(kCrateAndBall + marks);
+  const Outcome run = obscura("render scene.toml --at 0.5 --size 320x180 --states run.csv -o a.pdf");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("places and velocities do not tell acceleration, friction, normal force: "
+                                 "its marks and plots are left out"));
+  scene(kCrateAndBall + marks.substr(0, marks.find("[[film.vector]]", 1)), "weight.toml");
+  const Outcome told = obscura("render weight.toml --at 0.5 --size 320x180 --states run.csv -o b.png");
+  EXPECT_EQ(told.err.find("left out"), std::string::npos) << told.err;
+  ASSERT_EQ(obscura("render scene.toml --at 0.5 --size 320x180 --states run.csv -o a.png").exit, 0);
+  EXPECT_EQ(obscura("compare a.png b.png").exit, 0);
+}
+
 TEST_F(Footage, NeedsThePlacesOfTheScenesBodiesAndSaysWhatItLeavesOut) {
   scene("time,crate.position.x,crate.position.y,bell.position.x,bell.position.y\n0,1,1,3,1\n", "run.csv");
   Outcome run = obscura("render scene.toml --at 0 --states run.csv -o a.png");

@@ -321,7 +321,7 @@ TEST(Formula, LargeAndSmallNumbersHaveAPowerOfTen) {
   EXPECT_EQ(with_value("{}", 1216.4, "m/s"), "1216\" m/s\"");
   EXPECT_EQ(with_value("{}", 999.7, "m/s"), "1000\" m/s\"");
   EXPECT_EQ(with_value("{}", 999999.7, "m"), "1.00 \\times 10^{6}\" m\"");
-  EXPECT_EQ(with_value("{}", 1e-12, "m"), "0\" m\"");
+  EXPECT_EQ(with_value("{}", 1e-12, "m"), "1.00 \\times 10^{-12}\" m\"");
   EXPECT_EQ(with_value("{:.1}", 2e6, "m"), "2000000.0");
   // all of a run have the largest's
   const auto read = [](double value) {

@@ -218,10 +218,19 @@ TEST(Layout, EllipsisKeepsWholeCharacters) {
 }
 
 TEST(Layout, ClockHasTwoDecimalsAndNoNegativeZero) {
-  EXPECT_EQ(clock_text(3.4166666), "t = 3.42 s");
-  EXPECT_EQ(clock_text(0), "t = 0.00 s");
-  EXPECT_EQ(clock_text(-0.001), "t = 0.00 s");
-  EXPECT_EQ(clock_text(123.456), "t = 123.46 s");
+  EXPECT_EQ(clock_text(3.4166666, 5), "t = 3.42 s");
+  EXPECT_EQ(clock_text(0, 5), "t = 0.00 s");
+  EXPECT_EQ(clock_text(-0.001, 5), "t = 0.00 s");
+  EXPECT_EQ(clock_text(123.456, 200), "t = 123.46 s");
+}
+
+TEST(Layout, ClockOfAShortRunHasASmallerUnit) {
+  EXPECT_EQ(clock_text(0.05, 0.2), "t = 0.05 s");
+  EXPECT_EQ(clock_text(0.05, 0.19), "t = 50.00 ms");
+  EXPECT_EQ(clock_text(0.00052, 0.002), "t = 0.52 ms");
+  EXPECT_EQ(clock_text(3.2e-5, 1e-4), "t = 32.00 µs");
+  EXPECT_EQ(clock_text(3.2e-14, 1e-13), "t = 32.00 fs");
+  EXPECT_EQ(clock_text(3.2e-17, 1e-16), "t = 0.03 fs");
 }
 
 TEST(Layout, WithoutARoomTheExtentIsFitted) {

@@ -46,6 +46,21 @@ TEST(Type, SignsThatAFontLacksAreTakenFromAnother) {
   EXPECT_EQ(list.texts[0].spans.size(), 4u) << "in pictures";
 }
 
+TEST(Type, LettersThatNoFontHasAreKnown) {
+  const auto known = [](const std::string& letter) {
+    const std::vector<std::string> all = letters_without_glyph();
+    return std::find(all.begin(), all.end(), letter) != all.end();
+  };
+  (void)shape({{0, 0}, Align::left, {{.text = "a\xF3\xB0\x80\x81 b"}}});  // of the private use area
+  EXPECT_TRUE(known("\xF3\xB0\x80\x81"));
+  EXPECT_FALSE(known("a"));
+}
+
+TEST(Type, NumbersHaveTheSceneDecimalMark) {
+  EXPECT_EQ(with_decimal_mark("mass = 0.5, no. 2.", ","), "mass = 0,5, no. 2.");
+  EXPECT_EQ(with_decimal_mark("mass = 0.5", "."), "mass = 0.5");
+}
+
 TEST(Type, EverySignOfOurFormulasHasAGlyph) {
   const std::vector<std::pair<Face, std::string>> needs{{Face::regular, "Aäß…−°²Δ"},
                                                         {Face::bold, "Aäß…"},

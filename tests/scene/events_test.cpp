@@ -817,6 +817,10 @@ TEST(Events, MistakesAreToldWithTheirPlace) {
   EXPECT_THAT(with("value = \"ball.z < 1\""), HasSubstr("is of space"));
   EXPECT_THAT(with("touches = [\"ball\", \"flor\"]"), HasSubstr("no body is called 'flor'"));
   EXPECT_THAT(with("touches = [\"ball\", \"floor\"]"), HasSubstr("the room has no 'floor'"));
+  EXPECT_THAT(wrong_with("[room]\nsize = [4, 3]\n[[ball]]\nname = \"floor\"\nposition = [1, 1]\n[[ball]]\n"
+                         "name = \"ball\"\nposition = [3, 1]\n" +
+                         when("touches = [\"ball\", \"floor\"]")),
+              HasSubstr("'floor' is a body, and a wall of the room, which is wall[0] too"));
   EXPECT_THAT(with("breaks = \"rope\""), HasSubstr("no joint or bond is called 'rope'"));
   EXPECT_THAT(with("time = 1", "{ release = \"ball\" }"), HasSubstr("'ball' is free"));
   EXPECT_THAT(with("time = 1", "{ set = \"ball.elasticity\", to = 2 }"),

@@ -213,8 +213,9 @@ World<2> heap(int seed, int count) {
     } else if (i % 4 == 1) {
       add_polygon(world, odd_polygon(chance, 3 + i % 5, 0.28), 1.5, x, {0, 0}, angle, 0, e);
     } else {
-      add_box(world, {chance.between(0.2, 0.5), chance.between(0.15, 0.35)}, chance.between(0.5, 3), x,
-              {0, 0}, angle, 0, e);
+      // one after another: compilers differ in which argument they take first
+      const double mass = chance.between(0.5, 3);
+      add_box(world, {chance.between(0.2, 0.5), chance.between(0.15, 0.35)}, mass, x, {0, 0}, angle, 0, e);
     }
   }
   rub(world, 0.5);

@@ -15,6 +15,7 @@
 #include "app/console/say.h"
 #include "app/console/waiting.h"
 #include "app/film/estimate.h"
+#include "app/run/run_marks.h"
 #include "app/run/trouble.h"
 #include "draw/picture/joint_look.h"
 #include "draw/picture/rope_way.h"
@@ -181,7 +182,7 @@ struct ExportFlags {
 };
 
 int run(const ExportFlags& flags) {
-  const scene::Scene scene = scene::read(flags.scene, flags.sets);
+  const scene::Scene scene = with_run_marks(scene::read(flags.scene, flags.sets));
   warn_of_steps(scene);
   const sim::Rational fps = flags.fps ? parse_fps(*flags.fps) : scene.film.fps;
   const std::string out = flags.out.value_or(scene.name + ".glb");

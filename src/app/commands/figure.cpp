@@ -16,6 +16,7 @@
 #include "app/console/say.h"
 #include "app/figure/figure_builder.h"
 #include "app/figure/figure_raster.h"
+#include "app/run/trouble.h"
 #include "draw/picture/type.h"
 #include "gl/context.h"
 #include "media/error.h"
@@ -132,6 +133,7 @@ int run(const FigureFlags& flags) {
     }
   }
   say(stdout, "{}: {}\n", out, size);
+  warn_of_letters(album.scene());
   return kDone;
 }
 

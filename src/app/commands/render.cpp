@@ -316,8 +316,11 @@ int render(RenderFlags flags) {
   divide(flags, out);
   warn_of_steps(scene);
   see_what_it_needs(scene, shots, out, flags.film);
-  if (under) return film_under(scene, shots, out, flags);
-  return each ? render_each(scene, shots, flags) : film_and_poster(scene, shots, out, flags);
+  const int code = under  ? film_under(scene, shots, out, flags)
+                   : each ? render_each(scene, shots, flags)
+                          : film_and_poster(scene, shots, out, flags);
+  warn_of_letters(scene);
+  return code;
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "draw/page/plot.h"
 #include "draw/picture/list.h"
 #include "draw/picture/look.h"
+#include "draw/picture/prose.h"
 #include "scene/scene.h"
 #include "sim/model/snapshot.h"
 
@@ -53,7 +54,8 @@ class FigureBuilder {
   double width() const { return width_; }  // pt
   /// What it shows, in sentences.
   std::string text() const;
-  std::string title() const { return panels_.front().scene.look.title; }
+  const scene::Scene& scene() const { return panels_.front().scene; }
+  std::string title() const { return draw::in_letters(panels_.front().scene.look.title); }
 
  private:
   struct Panel {

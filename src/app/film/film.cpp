@@ -25,6 +25,7 @@
 #include "app/run/origin.h"
 #include "app/run/plots.h"
 #include "app/run/simulation.h"
+#include "app/run/telling.h"
 #include "app/run/trouble.h"
 #include "draw/picture/prose.h"
 #include "media/error.h"
@@ -88,6 +89,7 @@ class Filming {
   int prepare(Simulation& simulation);
   std::function<DrawnSegment(FilmSegment)> hire();
   DrawnSegment print(FilmSegment take, FrameRenderer& darkroom);
+  std::string description(const FrameRenderer& darkroom, const FilmSegment& take, std::size_t i) const;
   void shoot(Simulation& simulation, Progress& progress);
   void clear_longer() const;
   int finish(Progress& progress, const Simulation& simulation, std::int64_t wanted);
@@ -276,7 +278,7 @@ Filming::DrawnSegment Filming::print(FilmSegment take, FrameRenderer& darkroom) 
       of_frame.shot = take.shots[i], of_frame.state = take.states[i], of_frame.frames = 0;
       of_frame.states = checksums(take.states[i], take.all_bodies(i));
       media::Tags tags = of_frame.tags(draw::in_letters(scene_.look.title));
-      tags["Description"] = picture_text(scene_, darkroom.scene_info(), take.moments[i]);
+      tags["Description"] = description(darkroom, take, i);
       media::write_png(output_.file(take.shots[i].frame), image,
                        {.alpha = options_.transparent, .tags = tags});
     }
@@ -296,6 +298,19 @@ Filming::DrawnSegment Filming::print(FilmSegment take, FrameRenderer& darkroom) 
       media::write_part(cut_part(), spec, segment);
   }
   return print;
+}
+
+// a frame in words; of several runs each by its name
+std::string Filming::description(const FrameRenderer& darkroom, const FilmSegment& take,
+                                 std::size_t i) const {
+  std::string all = picture_text(scene_, darkroom.scene_info(), take.moments[i]);
+  if (!ahead_.runs) return all;
+  const draw::Look& look = scene_.look;
+  all = look.title.empty() ? "" : telling::headline(look);
+  for (std::size_t run = 0; run < ahead_.runs->size(); ++run)
+    all += fmt::format("{}{}: {}", all.empty() ? "" : " ", draw::in_letters((*ahead_.runs)[run].look.name),
+                       instant_text(darkroom.scene_info(run), take.run(run).moments[i]));
+  return all;
 }
 
 // simulates, draws and writes what is wanted

@@ -60,7 +60,8 @@ const char* kind_of(sim::ShapeKind kind) {
 // What a page says of a run besides its pictures, frame by frame.
 class PageNumbers {
  public:
-  PageNumbers(const std::vector<draw::Illustrator>& artists, const Ahead& ahead, page::Reel& reel);
+  PageNumbers(const std::vector<draw::Illustrator>& artists, double duration, const Ahead& ahead,
+              page::Reel& reel);
   void add(const FilmSegment& take, std::size_t frame);
   Json bodies() const { return bodies_; }
   Json charts() const { return charts_; }
@@ -87,12 +88,14 @@ class PageNumbers {
   Json bodies_ = Json::array(), charts_ = Json::array();
 };
 
-PageNumbers::PageNumbers(const std::vector<draw::Illustrator>& artists, const Ahead& ahead, page::Reel& reel)
+PageNumbers::PageNumbers(const std::vector<draw::Illustrator>& artists, double duration, const Ahead& ahead,
+                         page::Reel& reel)
     : artists_(artists), reel_(reel), dimension_(artists.front().scene_info().dimension) {
-  time_ = reel.number(kTimeBound);
+  time_ = reel.number(kTimeBound * std::min(1.0, duration));
   for (std::size_t run = 0; run < artists.size(); ++run) {
     const sim::SceneInfo& cast = artists[run].scene_info();
-    const double length = kPlaceBound * std::max(cast.scale, 1e-6);
+    const double length = kPlaceBound * cast.scale,
+                 speed = kSpeedBound * cast.scale * std::max(1.0, 1 / duration);
     for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
       const sim::SceneInfo::Body& body = cast.bodies[i];
       if (body.bare) continue;
@@ -101,10 +104,10 @@ PageNumbers::PageNumbers(const std::vector<draw::Illustrator>& artists, const Ah
       Body its{run, i, -1, dimension_ == 2 && body.turns};
       Json place = Json::array(), velocity = Json::array();
       for (int k = 0; k < dimension_; ++k) place.push_back(reel.number(length));
-      for (int k = 0; k < dimension_; ++k)
-        velocity.push_back(reel.number(kSpeedBound * std::max(cast.scale, 1e-6)));
+      for (int k = 0; k < dimension_; ++k) velocity.push_back(reel.number(speed));
       its.first = place[0];
       each["place"] = place, each["velocity"] = velocity;
+      each["within"] = {length, speed};
       if (its.angle) each["angle"] = reel.number(kAngleBound);
       if (body.turns) each["spin"] = reel.number(kSpeedBound);
       if (body.fixed)
@@ -130,12 +133,14 @@ PageNumbers::PageNumbers(const std::vector<draw::Illustrator>& artists, const Ah
       std::string name(line.measure->name);
       if (line.body >= 0) name += " of " + scene::one_line(cast.bodies[std::size_t(line.body)].name);
       if (artists.size() > 1 && ahead.runs) name = (*ahead.runs)[run].look.name + ": " + name;
-      const int number = reel.number(kPlotBound * std::max(area.high - area.low, 1e-12));
+      const double bound = kPlotBound * (area.high - area.low);
+      const int number = reel.number(bound);
       lines_.push_back({run, line, number});
       lines.push_back({{"name", name},
                        {"unit", line.measure->unit ? line.measure->unit : ""},
                        {"color", css(shown.plot.lines[i].color)},
-                       {"number", number}});
+                       {"number", number},
+                       {"within", bound}});
     }
     each["lines"] = lines;
     charts_.push_back(std::move(each));
@@ -177,7 +182,7 @@ struct PageFilm::Making {
         ahead(app::ahead(scene)),
         simulation(scene, shots, ahead, {.frames = 1}),
         artist(scene, ahead),
-        numbers(artist.artists(), ahead, reel) {
+        numbers(artist.artists(), sim::value(scene.duration), ahead, reel) {
     const std::vector<draw::Rect> panels = artist.panels();
     for (std::size_t i = 0; i < artist.artists().size(); ++i)
       if (const draw::SpaceStage* stage = artist.artists()[i].space())
@@ -276,6 +281,7 @@ std::string PageFilm::html(bool watched, const std::vector<std::uint8_t>& still)
   film["fps"] = sim::value(m.shots.fps());
   film["dimension"] = scene.dimension();
   film["time"] = m.numbers.time();
+  film["duration"] = sim::value(scene.duration);
   if (!whole) film["of"] = m.shots.size();
   film["windows"] = Json::array();
   for (const draw::Rect& w : m.artist.windows()) film["windows"].push_back({w.x, w.y, w.width, w.height});

@@ -20,7 +20,7 @@ class FramePainter {
   draw::Picture frame(const FilmSegment& take, std::size_t frame, std::size_t exposure = 0) const;
 
   const std::vector<draw::Illustrator>& artists() const { return artists_; }
-  const sim::SceneInfo& scene_info() const { return artists_.front().scene_info(); }
+  const sim::SceneInfo& scene_info(std::size_t run = 0) const { return artists_[run].scene_info(); }
   /// The parts of the page that show the worlds of the runs: in space one for all.
   std::vector<draw::Rect> windows() const;
   /// The parts of the page that the runs have, one a run.

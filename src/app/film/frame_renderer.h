@@ -37,7 +37,7 @@ class FrameRenderer {
   }
 
   const gl::Renderer& renderer() const { return renderer_; }
-  const sim::SceneInfo& scene_info() const { return painter_.scene_info(); }
+  const sim::SceneInfo& scene_info(std::size_t run = 0) const { return painter_.scene_info(run); }
 
  private:
   gl::Renderer renderer_;

@@ -12,6 +12,7 @@
 #include "draw/compose/annotate.h"
 #include "draw/compose/comparison.h"
 #include "draw/page/layout.h"
+#include "draw/picture/type.h"
 #include "draw/plane/stage.h"
 
 namespace obscura::app {
@@ -84,7 +85,8 @@ std::vector<Ahead::Run> compared(const scene::Scene& scene) {
       extent.low[d] = std::min({extent.low[d], extent.high[d], one.extent.low[d], one.extent.high[d]});
       extent.high[d] = std::max({extent.low[d], extent.high[d], one.extent.low[d], one.extent.high[d]});
     }
-    run.look.name = names.empty() ? all.words(i) : names[std::size_t(i)];
+    run.look.name =
+        names.empty() ? draw::with_decimal_mark(all.words(i), scene.look.decimal) : names[std::size_t(i)];
     run.look.color = draw::compared_paint(int(i), scene.look.theme).outline;
     const sim::SceneInfo cast = one.run()->scene_info();
     colour(cast, over, draw::compared_color(int(i)), one.look);

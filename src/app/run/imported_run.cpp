@@ -9,8 +9,11 @@
 #include <map>
 #include <set>
 #include <unordered_map>
+#include <utility>
 
 #include "app/run/columns.h"
+#include "draw/page/measure.h"
+#include "draw/page/readings.h"
 #include "media/error.h"
 #include "scene/complaints.h"
 #include "sim/step/playback.h"
@@ -226,6 +229,49 @@ std::vector<std::vector<sim::Sighting>> Footage::poses(std::vector<std::string>&
 
 }  // namespace
 
+namespace {
+
+// Whether only the steps of a run tell a measure: a state does not.
+bool of_steps(const std::string& quantity) {
+  const draw::Measure* measure = draw::measure(quantity);
+  return quantity == "work" || (measure && measure->arrow && draw::of_steps(*measure->arrow));
+}
+
+// Takes out the marks and plots of what the states do not tell; `left` are their quantities.
+void leave_out(draw::Marks& marks, std::set<std::string>& left) {
+  std::erase_if(marks.vectors, [&](const draw::Marks::Vector& each) {
+    if (!draw::of_steps(each.quantity)) return false;
+    for (const std::string& name : draw::arrows())
+      if (draw::measure(name)->arrow == each.quantity) left.insert(draw::in_words(name));
+    return true;
+  });
+  std::erase_if(marks.labels, [&](const draw::Marks::Label& each) {
+    return of_steps(each.quantity) && left.insert(draw::in_words(each.quantity)).first != left.end();
+  });
+  if (!marks.cones.empty()) left.insert("contact");
+  marks.cones.clear();
+}
+void leave_out(draw::Measured& plot, std::set<std::string>& left) {
+  std::erase_if(plot.quantities, [&](const std::string& each) {
+    return of_steps(each) && left.insert(draw::in_words(each)).first != left.end();
+  });
+  if (of_steps(plot.against)) left.insert(draw::in_words(plot.against)), plot.quantities.clear();
+}
+
+void leave_out_forces(scene::Scene& scene, std::vector<std::string>& notes) {
+  std::set<std::string> left;
+  leave_out(scene.film.marks, left);
+  for (draw::Chart& chart : scene.film.charts) leave_out(chart, left);
+  std::erase_if(scene.film.charts, [](const draw::Chart& chart) { return chart.quantities.empty(); });
+  for (draw::BodyLook& body : scene.look.bodies)
+    if (std::exchange(body.contact, false)) left.insert("contact");
+  if (!left.empty())
+    notes.push_back(fmt::format("places and velocities do not tell {}: its marks and plots are left out",
+                                fmt::join(left, ", ")));
+}
+
+}  // namespace
+
 void show_run(const Table& table, bool interpolate, scene::Scene& scene, std::vector<std::string>& notes) {
   const Footage footage(table, scene);
   footage.check_columns(notes);
@@ -234,6 +280,7 @@ void show_run(const Table& table, bool interpolate, scene::Scene& scene, std::ve
   for (std::size_t row = 0; row < table.rows.size(); ++row) trajectory->times.push_back(table.time(row));
   trajectory->poses = footage.poses(notes);
   scene.trajectory = std::move(trajectory);
+  leave_out_forces(scene, notes);
   scene.trajectory_file = scene::one_line(std::filesystem::path(table.file).filename().string());
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/console/say.h"
+#include "draw/picture/type.h"
 
 namespace obscura::app {
 
@@ -24,6 +25,14 @@ std::string text(const sim::Trouble& trouble) {
 void warn_of_steps(const scene::Scene& scene) {
   for (const sim::Trouble& ahead : scene.stability_warnings())
     say(stderr, "{}: warning: {}\n", scene.file, ahead.likely);
+}
+
+void warn_of_letters(const scene::Scene& scene) {
+  const std::vector<std::string> letters = draw::letters_without_glyph();
+  if (!letters.empty())
+    say(stderr,
+        "{}: warning: the font has no {}: a box stands in its place; OBSCURA_FONT=FAMILY chooses another\n",
+        scene.file, std::string(fmt::format("{}", fmt::join(letters, " "))));
 }
 
 std::vector<std::string> limit_notes(const sim::Run& run) {

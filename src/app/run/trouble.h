@@ -16,6 +16,9 @@ std::string text(const sim::Trouble& trouble);
 /// Says, on standard error, where the steps of a scene are too long for its springs or drag.
 void warn_of_steps(const scene::Scene& scene);
 
+/// Says, on standard error, which letters of the words drawn so far are boxes, for the fonts have them not.
+void warn_of_letters(const scene::Scene& scene);
+
 /// What makes a run so far less exact: one line for each limit of its solver's work that a step has met.
 std::vector<std::string> limit_notes(const sim::Run& run);
 

@@ -105,7 +105,12 @@ std::vector<std::string> Variations::operator[](std::int64_t run) const {
 
 std::vector<std::string> Variations::sets(std::int64_t run, std::vector<std::string> sets) const {
   const std::vector<std::string> values = (*this)[run];
-  for (std::size_t k = 0; k < keys.size(); ++k) sets.push_back(keys[k].path + "=" + values[k]);
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    for (const std::string& set : sets)
+      if (set.starts_with(keys[k].path + "="))
+        throw UsageError(fmt::format("--set {}: it is varied", keys[k].path));
+    sets.push_back(keys[k].path + "=" + values[k]);
+  }
   return sets;
 }
 

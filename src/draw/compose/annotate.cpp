@@ -279,7 +279,7 @@ void Notes::arc(const At& at, const Place& place, double radius, double from, do
 // which is dashed, and open away from the eye; its tip is before the body.
 void Notes::turn(const WordKey& key, const Marks::Vector& vector, const Reading& reading,
                  const Formula& label, Color ink, int among) {
-  if (!(std::abs(reading.signed_value) > 1e-9)) return;
+  if (!(std::abs(reading.signed_value) > negligible(unit(vector.quantity), cast_, vector.body))) return;
   const sim::SceneInfo::Body& body = cast_.bodies[std::size_t(vector.body)];
   const Point center = view_.page(reading.tail);
   const double scale = view_.scale_at(reading.tail), wide = 1.1 * point_;
@@ -359,7 +359,7 @@ void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
     const std::string label =
         vector.label.find('=') == std::string::npos ? as_vector(with_its_number) : with_its_number;
     const auto set = [&](double value) {
-      return this->set(key, label, value, unit(vector.quantity), legible(ink, colours_));
+      return this->set(key, label, value, unit(vector.quantity), vector.body, legible(ink, colours_));
     };
     if (turns(vector.quantity)) {
       // arcs about one place lie around each other
@@ -426,7 +426,7 @@ void Notes::angle(int index, const Marks::Angle& angle) {
 
   const double degrees = whole * 180 / std::numbers::pi;
   const WordKey key{WordKey::angle, index};
-  const Formula f = set(key, angle.label, degrees, "°", colours_.ink);
+  const Formula f = set(key, angle.label, degrees, "°", angle.body, colours_.ink);
   const Point hub = view_.page(center), rim = view_.page(on_arc(whole / 2)), out = rim - hub;
   const Point m = out.norm() > 0 ? Point(out.normalized()) : Point(1, 0);
   std::vector<Placing::Candidate> places;
@@ -478,7 +478,7 @@ void Notes::length(int index, const Marks::Length& length) {
               colours_.ink);
   const double metres = (place(length.to, now_) - place(length.from, now_)).norm();
   const WordKey key{WordKey::length, index};
-  const Formula f = set(key, length.label, metres, "m", colours_.ink);
+  const Formula f = set(key, length.label, metres, "m", -1, colours_.ink);
   const Point middle = (from + to) / 2;
   std::vector<Placing::Candidate> places;
   for (const double s : {1.0, -1.0})

@@ -196,7 +196,7 @@ Picture Comparison::depict(const std::vector<Instant>& runs, double time, double
   list.part = 0;
   if (layout_.caption && look_.clock) {
     Text clock = layout_.clock;
-    clock.spans[0].text = clock_text(time);
+    clock.spans[0].text = clock_text(time, look_.duration);
     list.of({Subject::What::page, 1});
     list.add(clock);
   }

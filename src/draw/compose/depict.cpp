@@ -352,7 +352,7 @@ Picture Illustrator::depict(const sim::Snapshot& now, std::span<const std::share
   }
   if (stage.layout.caption && stage.look.clock) {
     Text clock = stage.layout.clock;
-    clock.spans[0].text = clock_text(at.over ? at.over->time : frame.time);
+    clock.spans[0].text = clock_text(at.over ? at.over->time : frame.time, stage.look.duration);
     list.of({Subject::What::page, 1});
     list.add(clock);
   }

@@ -36,11 +36,14 @@ Scales scales(const Marks& marks, const sim::SceneInfo& cast, std::span<const si
     for (const Marks::Vector& vector : marks.vectors) {
       double* most = scale_of(vector.quantity, longest);
       if (!most) continue;
-      for (const Reading& each : readings(vector, cast, now)) *most = std::max(*most, each.value.norm());
+      for (const Reading& each : readings(vector, cast, now))
+        if (const double size = each.value.norm();
+            size > negligible(unit(vector.quantity), cast, vector.body))
+          *most = std::max(*most, size);
     }
   }
   const double room = kLongest * std::min(window.width, window.height) / scale;
-  const auto of = [&](double most) { return most > 1e-9 ? room / most : 0; };
+  const auto of = [&](double most) { return most > 0 ? room / most : 0; };
   return {of(longest.velocity), of(longest.force), of(longest.impulse), of(longest.momentum),
           of(longest.acceleration)};
 }

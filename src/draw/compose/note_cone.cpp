@@ -93,7 +93,7 @@ void Notes::cone(int index, const Marks::Cone& cone, const Scales& scales) {
     dashes(point, tip(0, long_side));
     stroke_through(arc, thin_, colours_.ink, 2);
     const WordKey key{WordKey::cone, index, first.other >= 0 ? first.other : -1 - first.wall};
-    const Formula f = set(key, cone.label, half * 180 / std::numbers::pi, "°", colours_.ink);
+    const Formula f = set(key, cone.label, half * 180 / std::numbers::pi, "°", -1, colours_.ink);
     // beyond the arc; in space beside the line that it ends at, for it lies within the cone
     const Point beside = view_.page(space ? tip(half, radius) : tip(half / 2, radius));
     const Point middle = view_.page(space ? tip(0, radius) : point);

@@ -49,7 +49,7 @@ void Notes::label(int index, const Marks::Label& label) {
   const WordKey key{WordKey::label, index};
   const Measure* measure = draw::measure(label.quantity);
   const Formula f = measure && measure->read ? set(key, label.text, measure->at(cast_, now_, label.body),
-                                                   measure->unit, colours_.ink)
+                                                   measure->unit, label.body, colours_.ink)
                                              : formula(label.text, type_, colours_.ink);
   std::vector<Placing::Candidate> places{{at, 0, false}};
   // in a film beside the body, not on it

@@ -128,8 +128,9 @@ bool Notes::on_body(const Point& p) {
 }
 
 // what a label says, with its value; in a film in digits of equal width, as many at every instant
-Formula Notes::set(const WordKey& key, const std::string& text, double value, std::string_view unit,
+Formula Notes::set(const WordKey& key, const std::string& text, double value, std::string_view unit, int body,
                    Color ink) {
+  if (std::abs(value) < negligible(unit, cast_, body)) value = 0;
   if (how_.ranges) {
     ValueRange& range = (*how_.ranges)[key];
     range.low = std::min(range.low, value), range.high = std::max(range.high, value);

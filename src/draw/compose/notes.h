@@ -75,7 +75,8 @@ class Notes {
   void avoid_rails();
   void avoid_own_arrows();
   std::vector<std::vector<Point>> forms(int body, int corners) const;
-  Formula set(const WordKey& key, const std::string& text, double value, std::string_view unit, Color ink);
+  Formula set(const WordKey& key, const std::string& text, double value, std::string_view unit, int body,
+              Color ink);
   Placing::Candidate planned(const Word& word, double& leader) const;
   Point on_page(const Word& word, const Point& center) const;
   void plate(const Point& center, const Point& size, std::uint8_t strength);

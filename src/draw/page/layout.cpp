@@ -23,6 +23,7 @@ constexpr double kTitleLine = 42, kSubtitleLine = 34;  // of words in several li
 constexpr std::size_t kMostRows = 3;
 constexpr double kSmallestTitle = 0.5;  // of its size, before words are left out
 constexpr double kRounding = 1e-9;
+constexpr double kLeastOfUnit = 0.2;  // a shorter run has a smaller unit of time
 
 }  // namespace
 
@@ -105,13 +106,26 @@ std::vector<std::string> rows_of(const std::string& words, Face face, double siz
   return rows;
 }
 
+// the unit in which a run's clock counts, s, and its name
+std::pair<double, std::string_view> unit_of_time(double duration) {
+  std::pair<double, std::string_view> unit{1, "s"};
+  for (const std::string_view smaller : {"ms", "µs", "ns", "ps", "fs"})
+    if (duration < kLeastOfUnit * unit.first) unit = {unit.first / 1000, smaller};
+  return unit;
+}
+
+// the widest text of the clock, page units
+double clock_width(double duration, double size) {
+  const double widest = std::max(88.88 * unit_of_time(duration).first, duration);
+  return width_of(clock_text(widest, duration), Face::medium, size, true);
+}
+
 Setting set_words(const Look& look, double weight, double room, double page) {
   weight *= look.type_scale;
   const double title = width_of(look.title, Face::bold, kTitle * weight);
   const double subtitle = width_of(look.subtitle, Face::medium, kSubtitle * weight);
-  const double clock = look.clock ? width_of(clock_text(88.88), Face::medium, kClock * weight, true) +
-                                        (look.badge ? badge_room(weight) : 0)
-                                  : 0;
+  const double clock =
+      look.clock ? clock_width(look.duration, kClock * weight) + (look.badge ? badge_room(weight) : 0) : 0;
   const double gap = weight * kClockGap;
   const double top = title + (title > 0 && clock > 0 ? gap : 0) + clock;
   const double all =
@@ -161,8 +175,9 @@ void write_caption(Layout& layout, const Look& look, const Palette& colours, con
   const double span = right - left;
   double clock = 0;
   if (look.clock) {
-    clock = width_of(clock_text(88.88), Face::medium, kClock * unit, true) + kClockGap * unit +
-            (look.badge ? badge_room(unit) : 0);
+    const double widest = clock_width(look.duration, kClock * unit);
+    layout.clock_left = right - widest;
+    clock = widest + kClockGap * unit + (look.badge ? badge_room(unit) : 0);
     layout.clock = {
         {right, baseline},
         Align::right,
@@ -225,8 +240,10 @@ double width_of(const std::string& words, Face face, double size, bool tabular) 
       .width;
 }
 
-std::string clock_text(double time) {
-  return fmt::format("t = {:.2f} s", std::abs(time) < 0.005 ? 0.0 : time);
+std::string clock_text(double time, double duration) {
+  const auto [seconds, name] = unit_of_time(duration);
+  const double shown = time / seconds;
+  return fmt::format("t = {:.2f} {}", std::abs(shown) < 0.005 ? 0.0 : shown, name);
 }
 
 std::vector<HalfPlane> half_planes(const sim::SceneInfo& cast, const View& view) {

@@ -28,8 +28,9 @@ struct Layout {
   bool caption = false;
   std::vector<Text> words;  // title and subtitle
   std::vector<std::pair<Formula, Point>>
-      prose;   // those of their lines that have mathematics, at their left ends
-  Text clock;  // its span's text is the instant's
+      prose;              // those of their lines that have mathematics, at their left ends
+  Text clock;             // its span's text is the instant's
+  double clock_left = 0;  // where its widest text begins, page units
 };
 
 /// The fitted region: the room if its walls close, else the extent, and the ground near it.
@@ -63,8 +64,8 @@ void draw_words(const Layout& layout, List& list);
 /// of equal width.
 double width_of(const std::string& words, Face face, double size, bool tabular = false);
 
-/// "t = 3.42 s"
-std::string clock_text(double time);
+/// "t = 3.42 s"; of a run of less than 0.2 s in ms, of still shorter ones in µs, ns, ps or fs.
+std::string clock_text(double time, double duration);
 
 /// The walls as half planes of the page, as `view` shows them.
 std::vector<HalfPlane> half_planes(const sim::SceneInfo& cast, const View& view);

@@ -11,6 +11,8 @@ namespace {
 
 using sim::Vec3;
 
+constexpr double kNegligible = 1e-9;
+
 /// A reading of a rotation about a body's centre.
 Reading turning(const sim::SceneInfo& cast, const Vec3& middle, const Vec3& value) {
   return {middle, value, cast.dimension == 2 ? value.z() : value.norm()};
@@ -274,6 +276,59 @@ std::string_view unit(Quantity quantity) {
     default:
       return "N";
   }
+}
+
+bool of_steps(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::position:
+    case Quantity::velocity:
+    case Quantity::momentum:
+    case Quantity::weight:
+    case Quantity::spring:
+    case Quantity::spring_force:
+    case Quantity::drag:
+    case Quantity::field:
+    case Quantity::spin:
+      return false;
+    case Quantity::acceleration:
+    case Quantity::normal_force:
+    case Quantity::friction:
+    case Quantity::net_force:
+    case Quantity::joint_force:
+    case Quantity::contact:
+    case Quantity::impulse:
+    case Quantity::blast:
+    case Quantity::normal:
+    case Quantity::torque:
+    case Quantity::joint_torque:
+      return true;
+  }
+  return true;
+}
+
+double negligible(std::string_view unit, const sim::SceneInfo& cast, int body) {
+  double mass = 0;
+  if (body >= 0)
+    mass = cast.bodies[std::size_t(body)].mass;
+  else
+    for (const sim::SceneInfo::Body& each : cast.bodies) mass = std::max(mass, each.mass);
+  if (!(mass > 0)) mass = 1;
+  // a length of the scene, and an acceleration: that of gravity, or the length in a square second
+  const double length = cast.scale, acceleration = std::max(cast.gravity.norm(), length);
+  double typical = 1;
+  if (unit == "m")
+    typical = length;
+  else if (unit == "m/s")
+    typical = std::sqrt(acceleration * length);
+  else if (unit == "m/s²")
+    typical = acceleration;
+  else if (unit == "kg m/s" || unit == "N s")
+    typical = mass * std::sqrt(acceleration * length);
+  else if (unit == "N")
+    typical = mass * acceleration;
+  else if (unit == "J" || unit == "N m")
+    typical = mass * acceleration * length;
+  return kNegligible * std::min(1.0, typical);
 }
 
 double* scale_of(Quantity quantity, Scales& scales) {

@@ -30,6 +30,14 @@ sim::Vec3 sum(Quantity quantity, int body, const sim::SceneInfo& cast, const sim
 
 std::string_view unit(Quantity quantity);
 
+/// Whether places and velocities are not enough to know it: contacts, joints and explosions give it, or part
+/// of it.
+bool of_steps(Quantity quantity);
+
+/// What is rounding's and shown as 0, of values in a unit: 1e-9 of it, or where that is less, 1e-9 of what a
+/// body's mass, the room's height and its gravity make of it. `body`: whose value it is; -1: the heaviest's.
+double negligible(std::string_view unit, const sim::SceneInfo& cast, int body = -1);
+
 /// Whether it turns: its readings are arcs.
 constexpr bool turns(Quantity quantity) {
   return quantity == Quantity::spin || quantity == Quantity::torque || quantity == Quantity::joint_torque;

@@ -116,7 +116,7 @@ void draw_badge(double speed, const Rect& page, const Layout& layout, double wei
   double right = page.width - std::max(36 * weight, 0.045 * page.width), middle = 0.75 * size + 16 * weight;
   if (layout.caption && !layout.clock.spans.empty()) {
     const Span& clock = layout.clock.spans[0];
-    right = layout.clock.at.x() - width_of(clock_text(88.88), clock.face, clock.size, true) - size;
+    right = layout.clock_left - size;
     middle = layout.clock.at.y() - 0.36 * clock.size;
   }
   const double top = middle - high / 2;

@@ -45,7 +45,8 @@ std::string spaced(std::string_view unit) {
 }
 
 // a number with three digits that count has a power of ten from here up, and below that
-constexpr double kLarge = 999'999.5, kSmall = 1e-4, kZero = 1e-9;
+constexpr double kLarge = 999'999.5, kSmall = 1e-4;
+constexpr double kZero = 1e-9;             // of the largest number of an axis
 constexpr double kBetweenSamples = 0.005;  // of the range of a live value
 
 // the exponent of a number that has a power of ten
@@ -56,7 +57,7 @@ std::optional<int> power_of_ten(double size) {
 
 // how many digits after the point give three that count
 int three_digits(double value) {
-  if (!(value > kZero)) return 2;
+  if (!(value > 0)) return 2;
   int power = int(std::floor(std::log10(value)));
   // 0.9999 is shown as 1.00
   if (value + 0.5 * std::pow(10, power - 2) >= std::pow(10, power + 1)) ++power;
@@ -113,13 +114,13 @@ std::string with_value(const std::string& text, double value, std::string_view u
   const auto slot = value_slot(text);
   if (!slot) return text;
   if (slot->decimals) return filled(text, *slot, number(value, *slot->decimals), unit);
-  const double shown = std::abs(value) < kZero ? 0 : value, size = std::abs(shown);
+  const double size = std::abs(value);
   auto exponent = power_of_ten(size);
   if (exponent && size / std::pow(10, *exponent) >= 9.995) ++*exponent;  // 9.999 is shown as 10.0
   return filled(text, *slot,
-                exponent        ? number(shown / std::pow(10, *exponent), 2) + times_power(*exponent)
-                : size >= 999.5 ? number(shown, 0)
-                                : fmt::format("{:.3g}", shown),
+                exponent        ? number(value / std::pow(10, *exponent), 2) + times_power(*exponent)
+                : size >= 999.5 ? number(value, 0)
+                                : fmt::format("{:.3g}", value),
                 unit);
 }
 
@@ -129,7 +130,7 @@ Formula live(const std::string& text, double value, double low, double high, std
   if (!slot) return formula(text, size, color);
   const double most = std::max(std::abs(low), std::abs(high));
   // one power of ten for the whole run
-  const auto exponent = slot->decimals || most < kZero ? std::optional<int>() : power_of_ten(most);
+  const auto exponent = slot->decimals ? std::optional<int>() : power_of_ten(most);
   const double part = exponent ? std::pow(10, *exponent) : 1;
   const int digits = slot->decimals ? *slot->decimals : exponent ? 2 : three_digits(most);
   const auto width = [&](double x) {

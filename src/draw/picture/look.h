@@ -31,9 +31,10 @@ struct BodyLook {
 struct Look {
   Theme theme = Theme::paper;
   std::string title, subtitle;
-  bool clock = true;    // the time at the right of the caption
-  bool badge = false;   // before it, how fast the film goes
-  bool caption = true;  // the caption strip at all
+  bool clock = true;     // the time at the right of the caption
+  double duration = 10;  // s of the run: in which unit the clock tells it
+  bool badge = false;    // before it, how fast the film goes
+  bool caption = true;   // the caption strip at all
   bool hatching = true;
   bool axes = true;                   // the frame of each box
   bool pointer = true;                // mouse, its spring and its path

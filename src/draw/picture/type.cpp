@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string_view>
 #include <unordered_map>
@@ -340,6 +341,27 @@ Text with_all_signs(const Text& text) {
 
 namespace {
 
+/// Letters that no face has.
+class Letters {
+ public:
+  void add(const std::string& letter) {
+    const std::scoped_lock lock(mutex_);
+    if (std::find(all_.begin(), all_.end(), letter) == all_.end()) all_.push_back(letter);
+  }
+  std::vector<std::string> all() const {
+    const std::scoped_lock lock(mutex_);
+    return all_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<std::string> all_;
+};
+Letters& without_glyph() {
+  static Letters letters;
+  return letters;
+}
+
 /// A glyph of shaped letters, in the font's units.
 struct Placed {
   std::uint32_t index;
@@ -368,12 +390,17 @@ const std::vector<Placed>& glyphs_of(Face face, const std::string& letters, bool
   const hb_glyph_info_t* infos = hb_buffer_get_glyph_infos(buffer.it, &count);
   const hb_glyph_position_t* places = hb_buffer_get_glyph_positions(buffer.it, &count);
   std::vector<Placed>& glyphs = kept[key];
-  for (unsigned i = 0; i < count; ++i)
+  for (unsigned i = 0; i < count; ++i) {
+    if (infos[i].codepoint == 0 && infos[i].cluster < letters.size())
+      without_glyph().add(letters.substr(infos[i].cluster, sign_at(letters, infos[i].cluster).length));
     glyphs.push_back({infos[i].codepoint, places[i].x_offset, places[i].y_offset, places[i].x_advance});
+  }
   return glyphs;
 }
 
 }  // namespace
+
+std::vector<std::string> letters_without_glyph() { return without_glyph().all(); }
 
 Line shape(const Text& text) {
   Line line;
@@ -443,16 +470,20 @@ std::string characters_of(const Span& span) {
   return out;
 }
 
+std::string with_decimal_mark(std::string words, const std::string& mark) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  for (std::size_t i = 1; i + 1 < words.size(); ++i)
+    if (words[i] == '.' && digit(words[i - 1]) && digit(words[i + 1])) words.replace(i, 1, mark);
+  return words;
+}
+
 void set_decimal_mark(List& list, const std::string& mark) {
   if (mark == ".") return;
   for (Words& each : list.words) each.latex = latex_with_mark(each.latex, mark);
-  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
   for (Text& text : list.texts)
     for (Span& span : text.spans) {
       if (!span.tabular && span.face != Face::math) continue;
-      std::string& words = span.text;
-      for (std::size_t i = 1; i + 1 < words.size(); ++i)
-        if (words[i] == '.' && digit(words[i - 1]) && digit(words[i + 1])) words.replace(i, 1, mark);
+      span.text = with_decimal_mark(std::move(span.text), mark);
     }
 }
 

@@ -381,7 +381,7 @@ Picture depict_space(const SpaceStage& stage, const sim::Snapshot& now, Ways way
   picture.moving.part = 0;
   if (stage.layout.caption && stage.look.clock) {
     Text clock = stage.layout.clock;
-    clock.spans[0].text = clock_text(frame.time);
+    clock.spans[0].text = clock_text(frame.time, stage.look.duration);
     picture.moving.of({Subject::What::page, 1});
     picture.moving.add(clock);
     picture.moving.of({});

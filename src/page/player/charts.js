@@ -1,6 +1,6 @@
 // A film's plots: what they show where one points, and a cursor there.
 
-import { numeral } from "./values.js";
+import { clock, numeral } from "./values.js";
 
 export class Charts {
   /**
@@ -10,6 +10,7 @@ export class Charts {
   constructor(film, reel) {
     this.reel = reel;
     this.time = reel.numbers[film.time];
+    this.duration = film.duration;
     this.frames = reel.frames;
     /** @type {any[]} */
     this.charts = film.charts;
@@ -37,10 +38,10 @@ export class Charts {
 
   /** Words on all lines of a chart in a frame. */
   words(chart, frame) {
-    return [`t = ${this.time.at(frame).toFixed(3)} s`].concat(
+    return [`t = ${clock(this.time.at(frame), 3, this.duration)}`].concat(
       chart.lines.map(
         (/** @type {any} */ line) =>
-          `${line.name} = ${numeral(this.reel.numbers[line.number].at(frame))}${line.unit ? " " + line.unit : ""}`,
+          `${line.name} = ${numeral(this.reel.numbers[line.number].at(frame), line.within)}${line.unit ? " " + line.unit : ""}`,
       ),
     );
   }

@@ -4,7 +4,7 @@ import { from_base64, inflate } from "./bytes.js";
 import { Orbit } from "./lens.js";
 import { Picture } from "./picture.js";
 import { Reel } from "./reel.js";
-import { NOTHING, Values, clock, fixed } from "./values.js";
+import { NOTHING, Values } from "./values.js";
 
 const $ = (/** @type {string} */ id) => /** @type {any} */ (document.getElementById(id));
 const CLOSING = "closing: how fast the points that touch come together, along the normal of the contact";
@@ -123,8 +123,10 @@ class Player {
       run = this.values.time(frame);
     const scrub = $("scrub");
     if (Math.abs(Number(scrub.value) - frame) > NOTHING) scrub.value = String(frame);
-    scrub.setAttribute("aria-valuetext", `${clock(run)} of the run`);
-    $("clock").textContent = this.slowed ? `${clock(run)} (${clock(seconds)})` : `${run.toFixed(2)} / ${clock(this.ends)}`;
+    scrub.setAttribute("aria-valuetext", `${this.values.clock(run)} of the run`);
+    $("clock").textContent = this.slowed
+      ? `${this.values.clock(run)} (${seconds.toFixed(2)} s)`
+      : `${run.toFixed(2)} / ${this.ends.toFixed(2)} s`;
     const said = this.film.captions
       .filter((/** @type {any} */ c) => c.from <= seconds && seconds < c.to)
       .map((/** @type {any} */ c) => c.text)
@@ -209,7 +211,7 @@ class Player {
       const item = document.createElement("li"),
         button = document.createElement("button");
       button.type = "button";
-      button.textContent = `${event.time.toFixed(3)} s  ${event.text}`;
+      button.textContent = `${this.values.clock(event.time, 3)}  ${event.text}`;
       if (event.text.includes("closing")) button.title = CLOSING;
       button.addEventListener("click", () => {
         this.pause();
@@ -328,7 +330,7 @@ class Player {
     }
     const { head, rows } = this.values.table(this.picture.frame, this.by),
       { time, before } = this.values.instant(this.picture.frame);
-    $("when").textContent = `at ${time.toFixed(3)} s${before ? ", just before" : ""}`;
+    $("when").textContent = `at ${this.values.clock(time, 3)}${before ? ", just before" : ""}`;
     const body = panel.querySelector("tbody"),
       it = this.pointed;
     while (body.rows.length > rows.length) body.deleteRow(-1);
@@ -337,7 +339,7 @@ class Player {
       const line = body.rows[i],
         { part, index, name } = each.body;
       Object.assign(line.dataset, { part, index });
-      [name, ...each.values.map(fixed)].forEach((text, k) => {
+      [name, ...each.words].forEach((text, k) => {
         if (line.cells[k].textContent !== text) line.cells[k].textContent = text;
       });
       line.classList.toggle("now", Boolean(it && !it.chart && it.part === part && it.index === index));

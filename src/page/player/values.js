@@ -3,27 +3,46 @@
 export const NOTHING = 1e-6; // of a frame: what counts as none
 const ROWS = 200; // rows of a table
 
+const SMALL = -4; // the power of ten below which a number is told with it
+const UP = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+
+const minus = (/** @type {string} */ text) => text.replace("-", "−");
+const signless = (/** @type {string} */ text) => (Number(text) === 0 ? text.replace("-", "") : text);
+const raised = (/** @type {number} */ power) =>
+  minus(String(power)).replace("−", "⁻").replace(/[0-9]/g, (digit) => UP[Number(digit)]);
+
 /**
- * A number with so many digits that count.
+ * A number with so many digits that count, and none finer than it is known; one that is nearer to zero than that is 0.
  * @param {number} x
+ * @param {number} [within] how exactly it is known
  * @param {number} [digits]
  */
-export function numeral(x, digits = 3) {
-  if (!(Math.abs(x) >= 5e-7)) return "0";
-  const decimals = Math.min(Math.max(digits - 1 - Math.floor(Math.log10(Math.abs(x))), 0), 4);
-  const text = x.toFixed(decimals);
-  return (Number(text) === 0 ? "0" : text).replace("-", "−");
+export function numeral(x, within = 0, digits = 3) {
+  if (!(Math.abs(x) > within)) return "0";
+  const power = Math.floor(Math.log10(Math.abs(x))),
+    known = within > 0 ? -Math.floor(Math.log10(within)) : Infinity;
+  const decimals = Math.max(Math.min(digits - 1 - power, known), 0);
+  if (power >= SMALL) return minus(signless(x.toFixed(decimals)));
+  return minus(`${(x / 10 ** power).toFixed(Math.min(digits - 1, Math.max(known + power, 0)))} × 10${raised(power)}`);
 }
 
-/** A number with three decimals. */
-export function fixed(/** @type {number} */ x) {
-  const text = x.toFixed(3);
-  return (Number(text) === 0 ? "0.000" : text).replace("-", "−");
+/**
+ * A number with three decimals; in a tiny room with a power of ten.
+ * @param {number} x
+ * @param {number} within how exactly it is known
+ */
+export function fixed(x, within) {
+  return within < 2e-6 ? numeral(x, within, 4) : minus(signless(x.toFixed(Math.max(3, -Math.ceil(Math.log10(within))))));
 }
 
-/** @param {number} seconds */
-export function clock(seconds) {
-  return `${seconds.toFixed(2)} s`;
+/**
+ * Seconds, with as many decimals more as a short run needs.
+ * @param {number} seconds
+ * @param {number} decimals
+ * @param {number} duration of the run, s
+ */
+export function clock(seconds, decimals, duration) {
+  return `${seconds.toFixed(decimals + Math.max(0, Math.ceil(Math.log10(0.2 / duration))))} s`;
 }
 
 /** The values of a run's bodies at an instant. */
@@ -47,6 +66,11 @@ export class Values {
   /** @param {number} part @param {number} index */
   body(part, index) {
     return this.bodies.get(`${part}:${index}`);
+  }
+
+  /** Seconds of the run, in words. */
+  clock(/** @type {number} */ seconds, decimals = 2) {
+    return clock(seconds, decimals, this.film.duration);
   }
 
   /** Seconds of the run in a frame. */
@@ -92,10 +116,12 @@ export class Values {
   /** Rows of words on a body: what, and its value. */
   rows(body, frame) {
     const now = this.state(body, frame),
-      list = (/** @type {number[]} */ v) => v.map((x) => numeral(x)).join(", ");
-    const rows = [["position", `(${now.place.map(fixed).join(", ")}) m`]];
+      [length, speed] = body.within;
+    const list = (/** @type {string[]} */ words) => `(${words.join(", ")})`;
+    const rows = [["position", `${list(now.place.map((/** @type {number} */ x) => fixed(x, length)))} m`]];
     if (!body.fixed) {
-      rows.push(["speed", `${numeral(now.speed)} m/s`], ["velocity", `(${list(now.velocity)}) m/s`]);
+      const velocity = now.velocity.map((/** @type {number} */ v) => numeral(v, speed));
+      rows.push(["speed", `${numeral(now.speed, speed)} m/s`], ["velocity", `${list(velocity)} m/s`]);
       if (now.angle !== undefined) rows.push(["angle", `${numeral(now.angle)}°`]);
       if (now.spin !== undefined) rows.push(["spin", `${numeral(now.spin)} rad/s`]);
       rows.push(["mass", `${numeral(body.mass)} kg`]);
@@ -115,7 +141,10 @@ export class Values {
       .filter((/** @type {any} */ body) => !body.fixed)
       .map((/** @type {any} */ body) => {
         const now = this.state(body, frame);
-        return { body, values: [...now.place, ...now.velocity, now.speed] };
+        const [length, speed] = body.within,
+          values = [...now.place, ...now.velocity, now.speed];
+        const words = values.map((x, i) => fixed(x, i < now.place.length ? length : speed));
+        return { body, values, words };
       });
     if (by === 0)
       rows.sort((/** @type {any} */ p, /** @type {any} */ q) => p.body.name.localeCompare(q.body.name, undefined, { numeric: true }));
