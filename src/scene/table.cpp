@@ -30,7 +30,8 @@ void replace(std::string& text, std::string_view word, std::string_view by) {
 
 std::vector<Key> built() {
   std::vector<Key> all;
-  const std::vector<Key> rows = scene::rows();
+  std::vector<Key> rows = world_rows();
+  for (Key& row : picture_rows()) rows.push_back(std::move(row));
   for (std::size_t i = 0; i < rows.size();) {
     if (rows[i].path.starts_with("mark.")) {
       ++i;

@@ -91,11 +91,12 @@ struct Key {
   }
 };
 
-/// The rows of the language as they are written; those of any.* stand for every kind of body, those of
-/// rigid.* for the kinds that turn, those of handout.* for those that the handout's collisions know, and
-/// `own` for the keys of the form of each kind (scene/body_kinds.h); those of mark.* are the marks of figures
-/// and films, which stand where figure.marks and film.marks do.
-std::vector<Key> rows();
+/// The rows of the language as they are written, of the run and of its pictures; those of any.* stand for
+/// every kind of body, those of rigid.* for the kinds that turn, those of handout.* for those that the
+/// handout's collisions know, and `own` for the keys of the form of each kind (scene/body_kinds.h); those of
+/// mark.* are the marks of figures and films, which stand where figure.marks and film.marks do.
+std::vector<Key> world_rows();
+std::vector<Key> picture_rows();
 
 /// The language: every key, in the order of the page.
 std::span<const Key> keys();

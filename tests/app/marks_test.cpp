@@ -278,7 +278,7 @@ void expect_apart(const draw::List& list, const std::string& where, double up = 
 }
 
 TEST(Marks, WordsKeepClearOfEachOther) {
-  for (const char* name : {"slope", "swing", "atwood", "conveyor", "drag_laws", "gears", "kapitza",
+  for (const char* name : {"slope", "swing", "atwood", "conveyor", "drag", "gears", "kapitza",
                            "loop_the_loop", "platform", "three_bodies"}) {
     Filmed film(kScenes + name + ".toml");
     for (std::int64_t frame = 0; frame < film.shots.size(); frame += 5)
@@ -803,6 +803,19 @@ TEST_F(MarkedFilm, TellsWhereItsRoomIsCrowdedOut) {
 }
 
 /// Marks of the run begin chapters, also where the film names none of them.
+TEST_F(MarkedFilm, OfAShippedSceneComesToAllOfItsMarks) {
+  int seen = 0;
+  for (const auto& file : std::filesystem::directory_iterator(kScenes)) {
+    if (file.path().extension() != ".toml") continue;
+    if (contents(file.path()).find("mark = ") == std::string::npos) continue;
+    ++seen;
+    const Outcome run = obscura("check " + file.path().string());
+    EXPECT_EQ(run.exit, 0) << file.path();
+    EXPECT_THAT(run.err, Not(HasSubstr("does not come to"))) << file.path();
+  }
+  EXPECT_GT(seen, 4);
+}
+
 TEST_F(MarkedFilm, HasChaptersOfItsMarks) {
   if (!installed("ffprobe")) GTEST_SKIP() << "needs ffprobe";
   scene(R"(title = "A fall"

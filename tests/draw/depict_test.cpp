@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -45,6 +46,49 @@ TEST(Trails, EndAtTheBodyAndUnderIt) {
   EXPECT_NEAR((list.nodes[list.strokes.back().end - 1].at - body).norm(), 0, 1e-9);
   EXPECT_EQ(list.batches.front().kind, Kind::stroke) << "drawn before the body";
   EXPECT_EQ(list.batches[1].kind, Kind::disc);
+}
+
+// along the upper side to the right, along the lower to the left, as far as the surface
+TEST(Belts, HaveMarksThatGoAroundWithTheSurface) {
+  Made made = room(8, 4.5);
+  made.body(ShapeKind::box, {4, 1, 0}, 0.5);
+  const auto marks = [&](double time, double speed) {
+    made.now.time = time, made.now.bodies[0].surface = speed;
+    const Picture picture = made.picture();
+    std::vector<Point> all;
+    for (const Stroke& stroke : picture.moving.strokes)
+      all.push_back(picture.moving.nodes[std::size_t(stroke.begin)].at);
+    return all;
+  };
+  EXPECT_TRUE(marks(1, 0).empty());
+  const View view = made.depictor().view(0);
+  const Point upper = view.page({4, 1.5, 0}), lower = view.page({4, 0.5, 0});
+  for (const double speed : {0.4, -0.4}) {
+    const std::vector<Point> before = marks(1, speed), after = marks(1.1, speed);
+    EXPECT_GE(before.size(), 8u);
+    EXPECT_EQ(before.size(), after.size());
+    const double way = 0.04 * view.scale * (speed > 0 ? 1 : -1);
+    int seen = 0;
+    for (const Point& mark : before) {
+      if (std::abs(mark.x() - upper.x()) > 0.4 * view.scale) continue;
+      const bool above = std::abs(mark.y() - upper.y()) < 1e-9;
+      if (!above && std::abs(mark.y() - lower.y()) > 1e-9) continue;
+      ++seen;
+      EXPECT_TRUE(std::any_of(after.begin(), after.end(), [&](const Point& it) {
+        return (it - mark - Point(above ? way : -way, 0)).norm() < 1e-6;
+      }));
+    }
+    EXPECT_GE(seen, 4);
+  }
+  // no longer than its form allows
+  made.cast.bodies[0].half = {0.5, 0.01, 0};
+  made.now.bodies[0].surface = 1;
+  const Picture thin = made.picture();
+  for (const Stroke& stroke : thin.moving.strokes)
+    EXPECT_LT(
+        (thin.moving.nodes[std::size_t(stroke.begin)].at - thin.moving.nodes[std::size_t(stroke.end - 1)].at)
+            .norm(),
+        0.01 * view.scale);
 }
 
 /// It crossed walls, hatching and plots.

@@ -54,5 +54,19 @@ TEST(Readings, AnArrowOfALightBodyIsAsLongAsThatOfAHeavyOne) {
   EXPECT_EQ(scales(marks, made.cast, moments, {0, 0, 400, 300}, 100).momentum, 0);
 }
 
+// an arrow that is shown only later is as long as its later values are large
+TEST(Readings, ArrowsAreScaledByWhatIsShown) {
+  const Made made = with_a_ball(1, 1);
+  Marks marks;
+  marks.vectors.push_back({.quantity = Quantity::momentum, .body = 0, .label = {}});
+  std::vector<sim::Snapshot> moments{made.now, made.now};
+  moments[0].bodies[0].velocity = {10, 0, 0};
+  moments[1].bodies[0].velocity = {2, 0, 0}, moments[1].time = 2;
+  const auto scale = [&] { return scales(marks, made.cast, moments, {0, 0, 400, 300}, 100).momentum; };
+  EXPECT_NEAR(scale() * 10, 0.34 * 300 / 100, 1e-12);
+  marks.vectors[0].shown.start = Cue{1};
+  EXPECT_NEAR(scale() * 2, 0.34 * 300 / 100, 1e-12);
+}
+
 }  // namespace
 }  // namespace obscura::draw

@@ -2,6 +2,7 @@
 #include "app/console/say.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "app/run/trouble.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "app/console/say.h"
 #include "draw/picture/type.h"

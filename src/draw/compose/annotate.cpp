@@ -19,7 +19,7 @@ namespace obscura::draw {
 namespace {
 
 constexpr double kBetweenArcs = 12;     // points
-constexpr double kFilmType = 24 / 8.5;  // page units a point at the weight 1, as of charts
+constexpr double kFilmType = 28 / 8.5;  // page units a point at the weight 1; of charts 33 / 8.5
 constexpr double kAxes = 0.36;          // of the picture's shorter side: axes in space
 constexpr double kAslant = 0.05;        // sine of an angle: nearer to each other two arrows are in line
 constexpr double kApart = 1.1;          // widths of an arrow: how far one on another's line moves aside

@@ -33,6 +33,7 @@ bool is_point(const sim::SceneInfo::Body& body) { return body.kind == sim::Shape
 void draw_flats(const Stage& stage, const View& view, const sim::Snapshot& now, Rank rank, List& list) {
   draw_boxes(stage, view, now, rank, list);
   draw_polygons(stage, view, now, rank, list);
+  draw_belts(stage, view, now, rank, false, list);
 }
 
 // bodies, what ties them, their own arrows and names
@@ -54,7 +55,10 @@ void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, 
   draw([&] { draw_flats(stage, view, now, Rank::free, list); });
   draw([&] { draw_springs(stage, view, now, true, list); });
   draw([&] { draw_rods(stage, view, now, list); });
-  draw([&] { draw_rounds(stage, view, now, list); });
+  draw([&] {
+    draw_rounds(stage, view, now, list);
+    draw_belts(stage, view, now, Rank::free, true, list);
+  });
   draw([&] { draw_gears(stage, view, now, list); });
   draw([&] { draw_racks(stage, view, now, list); });
   draw([&] { draw_flats(stage, view, now, Rank::arm, list); });

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "draw/compose/annotate.h"
 #include "draw/page/readings.h"
@@ -35,7 +36,7 @@ Scales scales(const Marks& marks, const sim::SceneInfo& cast, std::span<const si
   for (const sim::Snapshot& now : moments) {
     for (const Marks::Vector& vector : marks.vectors) {
       double* most = scale_of(vector.quantity, longest);
-      if (!most) continue;
+      if (!most || !vector.shown.has(now.time, std::numeric_limits<double>::quiet_NaN())) continue;
       for (const Reading& each : readings(vector, cast, now))
         if (const double size = each.value.norm();
             size > negligible(unit(vector.quantity), cast, vector.body))

@@ -135,6 +135,10 @@ void draw_still(const Stage& stage, const View& view, List& list);
 
 void draw_trails(const Stage& stage, const View& view, const sim::Snapshot& now, Ways ways, List& list);
 
+/// The marks of surfaces that run around bodies, of flat ones of a rank, or of round ones.
+void draw_belts(const Stage& stage, const View& view, const sim::Snapshot& now, Rank rank, bool rounds,
+                List& list);
+
 /// Springs that no body with points of its own holds, drawn behind the bodies, or those that one does, in
 /// front of the boxes; with a dot where they are made fast.
 void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now, bool solids, List& list);

@@ -114,6 +114,7 @@ struct Snapshot {
     Vec3 held = Vec3::Zero();    // of all joints, N
     Vec3 torque = Vec3::Zero();  // of joints, explosions and forces of the scene about its centre, N m
     double kinetic = 0, gravity = 0;  // its parts of the energies, J; of what does not move none
+    double surface = 0;               // m/s of its surface, in the plane, clockwise around it
   };
   struct Spring {
     Vec3 a = Vec3::Zero(), b = Vec3::Zero();  // where its ends are

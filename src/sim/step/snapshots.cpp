@@ -329,6 +329,7 @@ Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>
     Snapshot::Body& body = now.bodies[i];
     body.position = to_3d<D>(state.x[i]);
     body.velocity = to_3d<D>(state.v[i]);
+    if (D == 2) body.surface = model.bodies[i].belt[0];
     body.at_rest = i < int(state.frozen.size()) && state.frozen[i] != 0;
     if (!model.bodies[i].fixed)
       body.kinetic = kinetic(model, state, i), body.gravity = gravity_energy(model, state, i);
