@@ -205,6 +205,30 @@ TEST(Labels, OfAnArrowThatGoesRoundKeepOffTheOthers) {
   EXPECT_LE(unseen, 4) << "of " << ahead.moments.size();
 }
 
+/// In a figure, where an arrow's words have several places and a label of the room one.
+TEST(Labels, OfAnArrowKeepOffALabelThatHasItsPlace) {
+  Made made = room(8, 4.5);
+  made.body(ShapeKind::ball, {4, 3, 0}, 0.2);
+  made.now.bodies[0].velocity = {0, -1, 0};
+  Marks marks;
+  Marks::Vector vector;
+  vector.quantity = Quantity::velocity, vector.body = 0, vector.label = "fall";
+  marks.vectors.push_back(vector);
+  const auto words = [&](const Point& at) {
+    marks.labels = {{{-1, {at.x(), at.y(), 0}}, "label", {}, -1, {}}};
+    const Illustrator artist = made.depictor();
+    List list;
+    annotate(marks, {.velocity = 1.5}, made.cast, artist.colours(), artist.projection(0, made.now), made.now,
+             list);
+    const Text &name = *said(list, "fall"), &label = *said(list, "label");
+    const double size = label.spans[0].size;
+    return covered(name, label.at - Point(0, 0.3 * size), label.at + Point(shape(label).width, -0.3 * size));
+  };
+  // all around the arrow's tip
+  for (const double x : {3.5, 3.7, 3.9, 4.1, 4.3, 4.5})
+    for (const double y : {1.2, 1.4, 1.6, 1.8}) EXPECT_EQ(words({x, y}), 0) << x << " " << y;
+}
+
 /// The farthest that the words `begins` go in a frame as seen from body 0, page units, in three seconds of a
 /// run that at(time) tells. see(text, projection, now) is called for each frame.
 template <class At, class See>

@@ -16,9 +16,9 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kSteadySteps = 1.5;               // times as far as in the intervals around it: still steady
-constexpr double kUnbent = 0.25;                   // of a jump: the least bend
-constexpr double kLeastTime = 0.3, kMostTime = 2;  // s: of going over
+constexpr double kSteadySteps = 1.5;  // times as far as in the intervals around it: still steady
+constexpr double kUnbent = 0.25;      // of a jump: the least bend
+constexpr double kLeastTime = 0.3, kMostTime = 2.5;  // s: of going over
 
 double smooth(double u) {
   u = std::clamp(u, 0.0, 1.0);

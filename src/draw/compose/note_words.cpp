@@ -377,12 +377,16 @@ void Notes::finish() {
     const double pixel = how_.lettering.pixel;
     return pixel > 0 ? Point(std::round(at.x() / pixel) * pixel, std::round(at.y() / pixel) * pixel) : at;
   };
-  std::vector<Placed> placed;
-  for (const Word& word : words_) {
-    Placed& it = placed.emplace_back();
-    it.at = how_.plan ? planned(word, it.leader) : placing_.place(size(word.set), word.places);
-    if (film()) it.at.center = on_page(word, it.at.center);
-  }
+  // what has one place alone first: others keep clear of it
+  std::vector<Placed> placed(words_.size());
+  for (const bool sole : {true, false})
+    for (std::size_t i = 0; i < words_.size(); ++i) {
+      const Word& word = words_[i];
+      if ((word.places.size() == 1) != sole) continue;
+      Placed& it = placed[i];
+      it.at = how_.plan ? planned(word, it.leader) : placing_.place(size(word.set), word.places);
+      if (film()) it.at.center = on_page(word, it.at.center);
+    }
   if (how_.plan) yield(placed);
   // plates lie over bodies and lines but under arrows, which stay whole; one kind after another is drawn in
   // few batches
