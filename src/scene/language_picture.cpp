@@ -267,7 +267,7 @@ std::vector<Key> picture_rows() {
       {.path = "mark.point.dot", .form = boolean, .fallback = "true", .doc = "Whether a dot is drawn.", .example = "false"},
       {.path = "mark.point.color", .form = color, .absent = "ink", .doc = "Colour of dot and name; black is the page's ink.", .example = "\"blue\""},
       {.path = "mark.point.shown"},
-      {.path = "mark.vector", .form = tables, .doc = "An arrow with the length of a value of the run; each kind has one scale, given in the legend."},
+      {.path = "mark.vector", .form = tables, .doc = "An arrow with the length of a value of the run; each kind has one scale, which a figure tells in its legend."},
       {.path = "mark.vector.quantity", .form = choice, .fallback = "\"position\"",
        .choices = draw::arrows(),
        .doc = "The quantity: `position` goes from `at` to `to`; `contact` is `normal_force` plus `friction`, one arrow for each thing touched; `spring_force` (with damping; `spring`: without), `joint_force`: one for each spring, joint; `net_force`: the sum of all; `blast`: of explosions; `spin`, `torque` (of all that acts on the body, about its centre) and `joint_torque` (of each joint, about its place) are arcs.", .example = "\"velocity\""},

@@ -52,7 +52,8 @@ void look(const Node& top, const NameTable& roster, draw::Look& look, Diagnostic
   look.theme = fields.text("theme") == "screen" ? draw::Theme::screen : draw::Theme::paper;
   look.velocity_scale = fields.number("velocity_scale");
   look.velocity_scale_given = fields.given("velocity_scale") != nullptr;
-  if (const Node* scale = fields.given("force_scale")) look.force_scale = scale->number();
+  if (const Node* scale = fields.given("force_scale"))
+    look.force_scale = scale->number(), look.force_scale_given = true;
   look.caption = fields.flag("caption");
   look.clock = fields.flag("clock");
   look.duration = sim::value(words.rational("duration"));

@@ -191,6 +191,23 @@ TEST_F(Compared, ShardsAndResumedFilmsAreTheFilm) {
   EXPECT_EQ(media::read_png(path("a.png")).image, media::read_png(path("b/15.png")).image);
 }
 
+// forces of marks go by the run's longest, not by what bodies' own arrows have
+TEST_F(Compared, ForcesHaveArrowsThatAreSeen) {
+  const scene::Scene scene = scene::parse(
+      "duration = 1\n[room]\nsize = [4, 3]\n[[ball]]\nname = \"ball\"\nposition = [2, 2]\n"
+      "[film]\nvary = \"ball.mass=1,2\"\n[[film.vector]]\nquantity = \"weight\"\nof = \"ball\"\nlabel = "
+      "\"W\"\n",
+      "weights.toml", {});
+  const Ahead ahead = app::ahead(scene);
+  const std::vector<draw::Illustrator> artists = depictors(scene, ahead);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto run = (*ahead.runs)[i].scene.run();
+    const draw::Projection view = artists[i].projection(0, moment(*run, sim::rational(0), scene));
+    const double longest = 2 * 9.81 * (*ahead.runs)[i].annotations->scales().force * view.scale_at({2, 2, 0});
+    EXPECT_GT(longest, 0.2 * std::min(view.window().width, view.window().height)) << i;
+  }
+}
+
 TEST_F(Compared, AFrameIsDescribedRunByRunInTheScenesNumbers) {
   scene(std::string(kSpring) + "[look]\ndecimal = \",\"\n[film]\nvary = \"ball.mass=0.5,2\"\n");
   ASSERT_EQ(obscura(std::string("render scene.toml --at 1 -o a.png") + kSmallPanels).exit, 0);

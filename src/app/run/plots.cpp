@@ -309,7 +309,7 @@ double bytes(const sim::Snapshot& now) {
 // the scales that a scene sets, or that its bodies' own arrows have
 draw::Scales given_scales(const scene::Scene& scene, const sim::SceneInfo& cast) {
   draw::Scales scales;
-  bool velocity = scene.look.velocity_scale_given, force = scene.look.force_scale > 0;
+  bool velocity = scene.look.velocity_scale_given, force = scene.look.force_scale_given;
   for (const draw::BodyLook& body : scene.look.bodies)
     velocity = velocity || body.velocity, force = force || body.contact;
   if (velocity) scales.velocity = scene.look.velocity_scale;

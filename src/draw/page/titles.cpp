@@ -177,7 +177,10 @@ void draw_titles(const Titles& titles, const Layout& layout, double aspect, cons
   if (titles.empty()) return;
   const Rect page{0, 0, 1080 * aspect, 1080};
   const double weight = layout.weight, type = weight * titles.type_scale;
-  if (titles.badge && std::abs(speed - 1) > 0.005) draw_badge(speed, page, layout, type, colours, list);
+  const bool carded = std::any_of(titles.cards.begin(), titles.cards.end(),
+                                  [&](const Card& card) { return opacity(card, film) > 0; });
+  if (titles.badge && std::abs(speed - 1) > 0.005 && !carded)
+    draw_badge(speed, page, layout, type, colours, list);
   draw_captions(titles, page, type, time, film, colours.ink, list);
   for (const Card& card : titles.cards)
     if (const double strength = opacity(card, film); strength > 0)

@@ -40,7 +40,8 @@ struct Look {
   bool pointer = true;                // mouse, its spring and its path
   double velocity_scale = 0.1;        // s: arrow length in metres a metre per second
   bool velocity_scale_given = false;  // by the scene
-  double force_scale = 0;  // m/N: arrow length in metres a newton; 0: chosen by the bodies' weights
+  double force_scale = 0;          // m/N: arrow length in metres a newton; 0: chosen by the bodies' weights
+  bool force_scale_given = false;  // by the scene
   std::vector<std::pair<std::string, Color>> tracks;  // those that have a colour, by name
   std::vector<BodyLook> bodies;                       // as in the Cast
   // in space

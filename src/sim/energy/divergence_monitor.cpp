@@ -35,14 +35,14 @@ bool apart(const Eigen::Matrix<double, D, 1>& numbers, double limit) {
 }
 
 template <int D>
-std::string fate(const Eigen::Matrix<double, D, 1>& numbers, const char* limit) {
+std::string fate(const Eigen::Matrix<double, D, 1>& numbers, const char* limit, double t) {
   for (int i = 0; i < D; ++i) {
     if (std::isnan(numbers[i])) return "is not a number";
   }
   for (int i = 0; i < D; ++i) {
     if (std::isinf(numbers[i])) return "is infinite";
   }
-  return std::string("grew past ").append(limit);
+  return std::string(t == 0 ? "is beyond " : "grew past ").append(limit);
 }
 
 }  // namespace
@@ -62,15 +62,15 @@ std::optional<Trouble> DivergenceMonitor<D>::check_bounds(const State<D>& state,
       return Trouble{t, named(model_, body), quantity, std::move(what), likely(state, body)};
     };
     if (apart<D>(state.x[body], limit))
-      return trouble("position", fate<D>(state.x[body], "1e6 room heights"));
+      return trouble("position", fate<D>(state.x[body], "1e6 room heights", t));
     if (apart<D>(state.v[body], limit))
-      return trouble("velocity", fate<D>(state.v[body], "1e6 room heights a second"));
+      return trouble("velocity", fate<D>(state.v[body], "1e6 room heights a second", t));
     const int k = turning(state, body);
     if (k < 0) continue;
     const double fastest = limit / bounding_radius(model_.bodies[body].shape);
     constexpr int kSpin = kAngular<D>;
     if (apart<kSpin>(state.spin[k], fastest)) {
-      return trouble("spin", fate<kSpin>(state.spin[k], "1e6 room heights a second at a corner"));
+      return trouble("spin", fate<kSpin>(state.spin[k], "1e6 room heights a second at a corner", t));
     }
     if (const double most = kFarthestTurn * value(model_.rate);
         wobbles<D>(model_.bodies[body].inertia) && apart<kSpin>(state.spin[k], most)) {
@@ -79,7 +79,7 @@ std::optional<Trouble> DivergenceMonitor<D>::check_bounds(const State<D>& state,
     }
     constexpr int kTurn = Orientation<D>::RowsAtCompileTime;
     if (apart<kTurn>(state.turn[k], kFarthest * kFarthest)) {
-      return trouble(D == 2 ? "angle" : "orientation", fate<kTurn>(state.turn[k], "1e12 radians"));
+      return trouble(D == 2 ? "angle" : "orientation", fate<kTurn>(state.turn[k], "1e12 radians", t));
     }
   }
   return {};

@@ -272,9 +272,11 @@ std::span<typename Sleep<D>::Island> Sleep<D>::candidates(const State<D>& state)
     if (moves(state, i) && state.quiet[i] < kWait) disturb(i);
   }
   disturb_pulled(state);
+  // of the larger of two, as the overlap that is not corrected
   for (const Contact<D>& contact : state.contacts) {
-    const int body = moves(state, contact.key.a) ? contact.key.a : contact.key.b;
-    if (body >= 0 && contact.gap < -deepest_ * bounding_radius_[body]) disturb(body);
+    const int a = contact.key.a, b = contact.key.b, body = moves(state, a) ? a : b;
+    const double size = b < 0 ? bounding_radius_[a] : std::max(bounding_radius_[a], bounding_radius_[b]);
+    if (body >= 0 && contact.gap < -deepest_ * size) disturb(body);
   }
   list_candidates(state, state.contacts);
 

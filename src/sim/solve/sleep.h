@@ -45,7 +45,7 @@ class Sleep {
     double residual = 0;            // m/s^2: what the solver's forces leave any point at most; written by it
   };
 
-  /// Keeps `model` by reference. `deepest`: relative to a body's bounding radius; islands with deeper
+  /// Keeps `model` by reference. `deepest`: relative to the larger bounding radius of two; islands with deeper
   /// overlaps do not rest.
   Sleep(const Model<D>& model, Forces forces, double deepest = std::numeric_limits<double>::infinity());
 
