@@ -249,6 +249,11 @@ TEST(Formula, WhatIsNotClosedOrNotKnownStaysReadable) {
   for (const char* text : {"^", "\\", "\\bar", "\\bar{"}) EXPECT_GE(formula(text, 100, {}).width, 0) << text;
 }
 
+TEST(Formula, ADegreeIsUpAlready) {
+  for (const char* text : {"30^\\circ", "30^{\\circ}", "30^°"})
+    EXPECT_EQ(formula(text, 24, {}).spans, formula("30°", 24, {}).spans) << text;
+}
+
 TEST(Formula, AValueHasThreeDigitsAndItsUnit) {
   EXPECT_EQ(with_value("v = {}", 2.34567, "m/s"), "v = 2.35\" m/s\"");
   EXPECT_EQ(with_value("v", 2, "m/s"), "v");

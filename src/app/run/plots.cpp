@@ -273,10 +273,14 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
     // takes otherwise, would be kinks between them
     const sim::Rational rate = scene.shown_run()->rate();
     const std::int64_t before = sim::floor(wanted.from * rate), last = sim::ceil(wanted.to * rate);
-    const bool few = last - before <= kPoints / kFewSteps;
-    if (!few || draw_at(last - before, [&](std::int64_t i) {
-          return i == 0 ? wanted.from : sim::rational(before + i) / rate;
-        })) {
+    // those of the handout's collisions are taken as they are: parts of them bounce otherwise
+    const bool handout = std::visit(
+        [](const auto& world) { return world.model.collision == sim::Collision::handout; }, scene.world);
+    const bool few = last - before <= kPoints / (handout ? 1 : kFewSteps);
+    if (!few ||
+        (draw_at(last - before,
+                 [&](std::int64_t i) { return i == 0 ? wanted.from : sim::rational(before + i) / rate; }) &&
+         !handout)) {
       const sim::Rational stride = (wanted.to - wanted.from) / sim::rational(kPoints);
       draw_at(kPoints, [&](std::int64_t i) { return wanted.from + sim::rational(i) * stride; });
     }

@@ -15,7 +15,7 @@ namespace obscura::draw {
 namespace {
 
 constexpr double kWellBelow = 0.6;    // of its length: what a ceiling or floor may leave of an arrow
-constexpr double kLeastWhole = 0.4;   // of its length: one that would have to be shorter is cut
+constexpr double kLeastWhole = 0.15;  // of its length: one that would have to be shorter is cut
 constexpr double kOpenSide = 0.5;     // of its length: what a side may leave of one where bodies go out
 constexpr double kHeadRoom = 12;      // page units from the edge to a head
 

@@ -255,6 +255,8 @@ class Setter {
     const double size = kScript * scale, at = rise + scale * (sign == '_' ? kSub : kSuper);
     if (argument == "*")
       put(argument, Face::math, size, at);
+    else if (sign == '^' && (argument == "\\circ" || argument == "°"))
+      put("°", Face::math, scale, rise);  // it is up already
     else
       run(argument, size, at);
     bold_ = bold;
