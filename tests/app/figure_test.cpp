@@ -8,10 +8,12 @@
 
 #include <gmock/gmock.h>
 
+#include "app/run/plots.h"
 #include "media/png.h"
 #include "needs.h"
 #include "page/page.h"
 #include "program.h"
+#include "scene/scene.h"
 #include "where.h"
 
 namespace obscura::app {
@@ -402,6 +404,18 @@ TEST_F(Figure, LogarithmicPlotsSayTheirSlopes) {
   EXPECT_NEAR(slopes[1], -2, 0.1);
   EXPECT_NEAR(slopes[2], -1, 0.25);
   EXPECT_NEAR(slopes[3], -1, 0.25);
+}
+
+// parts of a step of the handout's collisions would show a motion that the run has not
+TEST_F(Figure, PlotsOfTheHandoutsCollisionsGoFromStepToStep) {
+  const scene::Scene scene = scene::parse(
+      "duration = 2\n[room]\nsize = [3, 1.5]\n[physics]\ncollision = \"handout\"\n[[box]]\nname = \"crate\"\n"
+      "size = [0.8, 0.4]\nposition = [1.5, 0.6]\nangle = 12\nelasticity = 0.4\nfriction = 0\n"
+      "[[figure.plot]]\nquantity = [\"spin\"]\nof = \"crate\"\nfrom = 1\nto = 1.1\n",
+      "ants.toml");
+  const std::vector<double> times = plots(scene, {})[0].times;
+  ASSERT_EQ(times.size(), 61u);
+  for (std::size_t k = 0; k < times.size(); ++k) EXPECT_NEAR(times[k], 1 + double(k) / 600, 1e-12);
 }
 
 TEST_F(Figure, PlotsGoAgainstOtherQuantities) {
