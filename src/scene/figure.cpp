@@ -59,7 +59,8 @@ class Reader {
   std::optional<draw::Site> site(const Node& node) const {
     const std::vector<sim::End<D>> all = ends(node, roster_, world_, complaints_);
     if (all.empty()) return {};
-    if (all.size() > 1) tell_one(node.is_text() ? node : node.list()[0], all.size());
+    if (all.size() > 1)
+      tell_one(node.is_text() ? node : node.is_table() ? *node.find("body") : node.list()[0], all.size());
     draw::Site site{all.front().body};
     site.local.template head<D>() = all.front().local;
     return site;
@@ -166,7 +167,7 @@ class Reader {
 
  private:
   void tell_one(const Node& name, std::size_t count) const {
-    complaints_.add(name.place, fmt::format("{} is {} bodies, and a mark is of one: say which",
+    complaints_.add(name.place, fmt::format("{} is {} bodies, and one is wanted: say which",
                                             scene::quoted(name.text()), count));
   }
   std::optional<draw::Cue> cue(const Fields& fields, const char* key) const {
@@ -400,6 +401,8 @@ std::vector<draw::Caption> captions(const Node& top, const Seating<D>& roster, c
   const Reader<D> read(roster, world, complaints, speed);
   const Fields fields = Fields::of(top, "film");
   const sim::Rational duration = Fields(top, "").rational("duration");
+  const Node* given = top.find("duration");
+  const bool shortened = given && given->place.set > 0;
   std::vector<draw::Caption> all;
   for (const Node& node : tables(fields, "caption")) {
     const Fields its(node, "film.caption");
@@ -411,8 +414,9 @@ std::vector<draw::Caption> captions(const Node& top, const Seating<D>& roster, c
       return exact ? sim::value(speed.film(*exact)) : cue.time;
     };
     const double ends = sim::value(duration);
-    // what waits for a mark that does not come is silent
-    if (caption.shown.start && caption.shown.start->time > ends && caption.shown.start->time < double(kNever))
+    // what waits for a mark that does not come is silent, and what a shorter run by --set leaves out
+    if (caption.shown.start && caption.shown.start->time > ends &&
+        caption.shown.start->time < double(kNever) && !shortened)
       complaints.add(its.place("start"),
                      fmt::format("a caption from {:g} s on is never shown: the scene ends at {:g} s",
                                  caption.shown.start->time, ends));

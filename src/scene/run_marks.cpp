@@ -12,7 +12,6 @@ namespace obscura::scene {
 
 namespace {
 
-
 bool names_mark(const Node& node) {
   if (!node.is_text() || node.text().empty()) return false;
   const char c = node.text()[0];

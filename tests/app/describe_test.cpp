@@ -254,6 +254,9 @@ TEST_F(Describe, SaysNothingOfWhatComesAfterAStop) {
   const Outcome late = obscura("check scene.toml");
   EXPECT_EQ(late.exit, 3);
   EXPECT_THAT(late.err, HasSubstr("a caption from 4 s on is never shown: the scene ends at 3 s"));
+  // but a shorter run that is asked for leaves out what comes later
+  scene(run_of_a_second);
+  EXPECT_EQ(obscura("check scene.toml --set duration=1").exit, 0);
 }
 
 TEST_F(Describe, SaysNothingOfWhatDoesNotCome) {

@@ -416,6 +416,10 @@ TEST_F(Figure, PlotsOfTheHandoutsCollisionsGoFromStepToStep) {
   const std::vector<double> times = plots(scene, {})[0].times;
   ASSERT_EQ(times.size(), 61u);
   for (std::size_t k = 0; k < times.size(); ++k) EXPECT_NEAR(times[k], 1 + double(k) / 600, 1e-12);
+  // more steps than points: some of the steps
+  const std::vector<double> many = plots(scene.again({"figure.plot[0].to=1.9"}), {})[0].times;
+  EXPECT_GT(many.size(), 200u);
+  for (const double t : many) EXPECT_NEAR(t * 600, std::round(t * 600), 1e-8);
 }
 
 TEST_F(Figure, PlotsGoAgainstOtherQuantities) {

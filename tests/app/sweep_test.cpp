@@ -180,6 +180,9 @@ TEST_F(Sweep, AMistypedRequestIsToldWhatWasMeantBeforeAnyRun) {
   said("--vary seed=1:2 --measure energy.total", 2, "expected NAME@WHEN");
   said("--vary seed=1:2 --vary seed=3 --measure hash@0", 2, "varied twice");
   said("--vary seed=1:2 --set seed=3 --measure hash@0", 2, "--set seed: it is varied");
+  said("--vary seed=1:2 --set 'seed = 3' --measure hash@0", 2, "--set seed: it is varied");
+  said("--vary 'ball.position=[1,1]' --set ball.position.x=2 --measure hash@0", 2,
+       "--set ball.position.x: it is varied");
   said("--vary seed=2:1 --measure hash@0", 2, "runs backwards");
   said("--vary ball.radius=0.1:0.25 --measure hash@0", 2,
        "goes by 1, and so not to 0.25: give a stride, as in 0.1:0.25:0.015");

@@ -80,6 +80,11 @@ TEST(Belts, HaveMarksThatGoAroundWithTheSurface) {
     }
     EXPECT_GE(seen, 4);
   }
+  // of one much longer than the picture those that are seen
+  made.cast.bodies[0].half = {1e9, 0.5, 0};
+  const std::size_t seen = marks(1, 0.4).size();
+  EXPECT_GT(seen, 20u);
+  EXPECT_LT(seen, 300u);
   // no longer than its form allows
   made.cast.bodies[0].half = {0.5, 0.01, 0};
   made.now.bodies[0].surface = 1;

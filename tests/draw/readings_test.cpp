@@ -66,6 +66,9 @@ TEST(Readings, ArrowsAreScaledByWhatIsShown) {
   EXPECT_NEAR(scale() * 10, 0.34 * 300 / 100, 1e-12);
   marks.vectors[0].shown.start = Cue{1};
   EXPECT_NEAR(scale() * 2, 0.34 * 300 / 100, 1e-12);
+  // while the film stands still there
+  marks.vectors[0].shown = {Cue{2, true, 2.5}, Cue{2, true, 3.5}};
+  EXPECT_NEAR(scale() * 2, 0.34 * 300 / 100, 1e-12);
 }
 
 }  // namespace

@@ -472,9 +472,11 @@ TEST(Diagnostics, AMarkIsOfOneBody) {
   const std::string copies =
       "[[ball]]\nname = 'b'\nradius = 0.1\nposition = [1, 1]\ncopies = { count = 3, offset = [1, 0] }\n";
   refused(copies + "[[film.vector]]\nquantity = 'velocity'\nof = 'b[*]'",
-          "a.toml:8:6: 'b[*]' is 3 bodies, and a mark is of one: say which");
+          "a.toml:8:6: 'b[*]' is 3 bodies, and one is wanted: say which");
   refused(copies + "[[film.point]]\nat = 'b[*]'",
-          "a.toml:7:6: 'b[*]' is 3 bodies, and a mark is of one: say which");
+          "a.toml:7:6: 'b[*]' is 3 bodies, and one is wanted: say which");
+  refused(copies + "[[film.point]]\nat = { body = 'b[*]', local = [0.05, 0] }",
+          "a.toml:7:15: 'b[*]' is 3 bodies, and one is wanted: say which");
 }
 
 TEST(Diagnostics, AnAxisHasOneUnit) {

@@ -303,10 +303,8 @@ Filming::DrawnSegment Filming::print(FilmSegment take, FrameRenderer& darkroom) 
 // a frame in words; of several runs each by its name
 std::string Filming::description(const FrameRenderer& darkroom, const FilmSegment& take,
                                  std::size_t i) const {
-  std::string all = picture_text(scene_, darkroom.scene_info(), take.moments[i]);
-  if (!ahead_.runs) return all;
-  const draw::Look& look = scene_.look;
-  all = look.title.empty() ? "" : telling::headline(look);
+  if (!ahead_.runs) return picture_text(scene_, darkroom.scene_info(), take.moments[i]);
+  std::string all = scene_.look.title.empty() ? "" : telling::headline(scene_.look);
   for (std::size_t run = 0; run < ahead_.runs->size(); ++run)
     all += fmt::format("{}{}: {}", all.empty() ? "" : " ", draw::in_letters((*ahead_.runs)[run].look.name),
                        instant_text(darkroom.scene_info(run), take.run(run).moments[i]));

@@ -36,6 +36,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kPlaceBound = 2e-4, kSpeedBound = 1e-3;  // of a body's numbers: m, or of the room's; m/s
 constexpr double kAngleBound = 1e-3, kTimeBound = 2e-6;   // rad, s
+constexpr double kDegrees = 57.29577951308232;            // a radian
 constexpr double kStill = 720;                            // pt: the width of the first picture,
 constexpr int kStillPixels = 720;                         // and of its surfaces
 constexpr double kPlotBound = 1e-3;                       // of an axis
@@ -107,7 +108,7 @@ PageNumbers::PageNumbers(const std::vector<draw::Illustrator>& artists, double d
       for (int k = 0; k < dimension_; ++k) velocity.push_back(reel.number(speed));
       its.first = place[0];
       each["place"] = place, each["velocity"] = velocity;
-      each["within"] = {length, speed};
+      each["within"] = {length, speed, kAngleBound * kDegrees, kSpeedBound};
       if (its.angle) each["angle"] = reel.number(kAngleBound);
       if (body.turns) each["spin"] = reel.number(kSpeedBound);
       if (body.fixed)

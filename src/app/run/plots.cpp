@@ -276,11 +276,16 @@ std::vector<draw::Plot> plots(const scene::Scene& scene, const std::vector<doubl
     // those of the handout's collisions are taken as they are: parts of them bounce otherwise
     const bool handout = std::visit(
         [](const auto& world) { return world.model.collision == sim::Collision::handout; }, scene.world);
-    const bool few = last - before <= kPoints / (handout ? 1 : kFewSteps);
-    if (!few ||
-        (draw_at(last - before,
-                 [&](std::int64_t i) { return i == 0 ? wanted.from : sim::rational(before + i) / rate; }) &&
-         !handout)) {
+    const bool few = last - before <= kPoints / kFewSteps;
+    const std::int64_t apart = handout ? (last - before) / kPoints + 1 : 1;
+    const auto steps = [&] {
+      return draw_at((last - before + apart - 1) / apart, [&](std::int64_t i) {
+        return i == 0 ? wanted.from : sim::rational(before + i * apart) / rate;
+      });
+    };
+    if (handout) {
+      steps();
+    } else if (!few || steps()) {
       const sim::Rational stride = (wanted.to - wanted.from) / sim::rational(kPoints);
       draw_at(kPoints, [&](std::int64_t i) { return wanted.from + sim::rational(i) * stride; });
     }

@@ -106,9 +106,13 @@ std::vector<std::string> Variations::operator[](std::int64_t run) const {
 std::vector<std::string> Variations::sets(std::int64_t run, std::vector<std::string> sets) const {
   const std::vector<std::string> values = (*this)[run];
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    for (const std::string& set : sets)
-      if (set.starts_with(keys[k].path + "="))
-        throw UsageError(fmt::format("--set {}: it is varied", keys[k].path));
+    for (const std::string& set : sets) {
+      // the same key, or a part of it
+      std::string path = set.substr(0, set.find('='));
+      path.erase(path.find_last_not_of(' ') + 1).erase(0, path.find_first_not_of(' '));
+      if (path == keys[k].path || path.starts_with(keys[k].path + "."))
+        throw UsageError(fmt::format("--set {}: it is varied", path));
+    }
     sets.push_back(keys[k].path + "=" + values[k]);
   }
   return sets;

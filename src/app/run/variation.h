@@ -42,7 +42,7 @@ struct Variations {
 
   /// The values of run `run`, from 0, one a key.
   std::vector<std::string> operator[](std::int64_t run) const;
-  /// The same as --set takes them, after others.
+  /// The same as --set takes them, after others. Throws UsageError where one of those sets what is varied.
   std::vector<std::string> sets(std::int64_t run, std::vector<std::string> sets) const;
   /// Whether no other key has the same name.
   bool alone(const Variation& key) const;

@@ -62,7 +62,7 @@ Scales kept_whole(const Marks& marks, const sim::SceneInfo& cast, std::span<cons
   const auto each_reading = [&](const SeenInstant& instant, auto&& act) {
     for (const Marks::Vector& vector : marks.vectors) {
       if (!scale_of(vector.quantity, scales)) continue;
-      if (!vector.shown.has(instant.now->time, std::numeric_limits<double>::quiet_NaN())) continue;
+      if (!vector.shown.may_have(instant.now->time)) continue;
       for (const Reading& reading : readings(vector, cast, *instant.now))
         if (instant.view.before(reading.tail)) act(vector, reading);
     }

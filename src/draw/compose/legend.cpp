@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "draw/compose/annotate.h"
 #include "draw/page/readings.h"
@@ -36,7 +35,7 @@ Scales scales(const Marks& marks, const sim::SceneInfo& cast, std::span<const si
   for (const sim::Snapshot& now : moments) {
     for (const Marks::Vector& vector : marks.vectors) {
       double* most = scale_of(vector.quantity, longest);
-      if (!most || !vector.shown.has(now.time, std::numeric_limits<double>::quiet_NaN())) continue;
+      if (!most || !vector.shown.may_have(now.time)) continue;
       for (const Reading& each : readings(vector, cast, now))
         if (const double size = each.value.norm();
             size > negligible(unit(vector.quantity), cast, vector.body))

@@ -64,7 +64,8 @@ void draw_words(const Layout& layout, List& list);
 /// of equal width.
 double width_of(const std::string& words, Face face, double size, bool tabular = false);
 
-/// "t = 3.42 s"; of a run of less than 0.2 s in ms, of still shorter ones in µs, ns, ps or fs.
+/// A time (s) of a run of a duration (s): "t = 3.42 s"; of one of less than 0.2 s in ms, of still shorter
+/// ones in µs, ns, ps or fs.
 std::string clock_text(double time, double duration);
 
 /// The walls as half planes of the page, as `view` shows them.

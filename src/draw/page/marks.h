@@ -65,6 +65,10 @@ struct Interval {
   }
   /// Whether it is shown at an instant of the run, `film` seconds into its film (not a number: of no film).
   bool has(double time, double film) const;
+  /// Whether it may be shown at an instant of the run, where seconds of the film are not known.
+  bool may_have(double time) const {
+    return (!start || time >= start->time - 1e-9) && (!end || end->after || time < end->time - 1e-9);
+  }
 };
 
 struct Marks {

@@ -40,10 +40,11 @@ std::pair<double, double> ink_of(const Text& text);
 /// mathematics help each other out. Throws draw::Error where a font is missing.
 Text with_all_signs(const Text& text);
 
-/// The letters that words had so far, of any thread, and no face has: boxes are drawn in their places.
+/// The letters that words had so far, of any thread, and no face has, each once and in the order in which
+/// they were met: boxes are drawn in their places.
 std::vector<std::string> letters_without_glyph();
 
-/// Words with another decimal mark in their numbers.
+/// Words with another decimal mark (UTF-8) between the digits of their numbers.
 std::string with_decimal_mark(std::string words, const std::string& mark);
 /// Sets the decimal mark of all numbers in mathematics and of figures of equal width.
 void set_decimal_mark(List& list, const std::string& mark);

@@ -1,5 +1,5 @@
 // Belts: marks along the inside of the outline of a body whose surface runs around it. They go clockwise, as
-// far as the surface in the time of the run; where an event gives it another speed they begin anew.
+// far as the surface at its speed in the time of the run; where an event gives it another speed they jump.
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,9 @@ namespace {
 
 // page units at weight 1: from one mark to the next, how long and how wide one is
 constexpr double kBetweenMarks = 36, kMarkLength = 12, kMarkWidth = 2.2;
-constexpr double kMarkDepth = 0.45;  // of the way to the body's middle
-constexpr int kFewestMarks = 3, kBeltCorners = 72;
+constexpr double kMarkDepth = 0.45;                   // of the way to the body's middle
+constexpr double kFewestMarks = 3, kMostMarks = 1e4;  // of a belt; of one of its sides
+constexpr int kBeltCorners = 72;
 
 // the outline of a body of one form, clockwise on the page; none: it has no belt that is drawn
 std::vector<Point> belt_loop(const sim::SceneInfo::Body& form, const sim::Snapshot::Body& body,
@@ -44,6 +45,8 @@ std::vector<Point> belt_loop(const sim::SceneInfo::Body& form, const sim::Snapsh
 void draw_belts(const Stage& stage, const View& view, const sim::Snapshot& now, Rank rank, bool rounds,
                 List& list) {
   const double weight = stage.layout.weight;
+  const Point seen(view.window.x + view.window.width / 2, view.window.y + view.window.height / 2);
+  const double reach = std::hypot(view.window.width, view.window.height) / 2;
   for (std::size_t i = 0; i < now.bodies.size(); ++i) {
     const sim::Snapshot::Body& body = now.bodies[i];
     const sim::SceneInfo::Body& form = stage.cast.bodies[i];
@@ -61,19 +64,26 @@ void draw_belts(const Stage& stage, const View& view, const sim::Snapshot& now, 
     if (outside(view.window, middle, length / 2)) continue;
     const double deep = std::min(kMarkLength * weight, kMarkDepth * narrow),
                  wide = std::min(kMarkWidth * weight, deep / 4);
-    const int marks = std::max(kFewestMarks, int(length / (kBetweenMarks * weight)));
+    const double marks = std::max(kFewestMarks, std::floor(length / (kBetweenMarks * weight)));
     const double pitch = length / marks, gone = body.surface * now.time * view.scale / pitch;
     double ahead = pitch * (gone - std::floor(gone));  // of the next corner
     list.of({Subject::What::body, int(i)});
     for (std::size_t k = 0; k < around.size(); ++k) {
       const Point a = around[k], edge = around[(k + 1) % around.size()] - a;
       const Point along = edge.normalized(), inwards(-along.y(), along.x());
-      for (; ahead < edge.norm(); ahead += pitch) {
-        const Point at = a + ahead * along;
+      const double side = edge.norm(), first = ahead, left = std::max(0.0, std::ceil((side - first) / pitch));
+      ahead += left * pitch - side;
+      // of a belt much longer than the window those near it
+      const double off = (seen - a).dot(inwards), foot = (seen - a).dot(along);
+      if (std::abs(off) > reach + deep) continue;
+      const double begin = std::max(0.0, std::ceil((foot - reach - deep - first) / pitch)),
+                   end = std::min(left, std::floor((foot + reach + deep - first) / pitch) + 1);
+      const int seen_marks = int(std::clamp(end - begin, 0.0, kMostMarks));
+      for (int n = 0; n < seen_marks; ++n) {
+        const Point at = a + (first + (begin + n) * pitch) * along;
         list.add({{at, wide, stage.paints[i].outline}, {at + deep * inwards, wide, stage.paints[i].outline}},
                  Cap::butt);
       }
-      ahead -= edge.norm();
     }
   }
 }

@@ -23,7 +23,10 @@ export function numeral(x, within = 0, digits = 3) {
     known = within > 0 ? -Math.floor(Math.log10(within)) : Infinity;
   const decimals = Math.max(Math.min(digits - 1 - power, known), 0);
   if (power >= SMALL) return minus(signless(x.toFixed(decimals)));
-  return minus(`${(x / 10 ** power).toFixed(Math.min(digits - 1, Math.max(known + power, 0)))} × 10${raised(power)}`);
+  const short = (/** @type {number} */ up) => (x / 10 ** up).toFixed(Math.min(digits - 1, Math.max(known + up, 0)));
+  // 9.999 is told as 10.0
+  const up = Math.abs(Number(short(power))) < 10 ? power : power + 1;
+  return minus(`${short(up)} × 10${raised(up)}`);
 }
 
 /**
@@ -116,14 +119,14 @@ export class Values {
   /** Rows of words on a body: what, and its value. */
   rows(body, frame) {
     const now = this.state(body, frame),
-      [length, speed] = body.within;
+      [length, speed, angle, spin] = body.within;
     const list = (/** @type {string[]} */ words) => `(${words.join(", ")})`;
     const rows = [["position", `${list(now.place.map((/** @type {number} */ x) => fixed(x, length)))} m`]];
     if (!body.fixed) {
       const velocity = now.velocity.map((/** @type {number} */ v) => numeral(v, speed));
       rows.push(["speed", `${numeral(now.speed, speed)} m/s`], ["velocity", `${list(velocity)} m/s`]);
-      if (now.angle !== undefined) rows.push(["angle", `${numeral(now.angle)}°`]);
-      if (now.spin !== undefined) rows.push(["spin", `${numeral(now.spin)} rad/s`]);
+      if (now.angle !== undefined) rows.push(["angle", `${numeral(now.angle, angle)}°`]);
+      if (now.spin !== undefined) rows.push(["spin", `${numeral(now.spin, spin)} rad/s`]);
       rows.push(["mass", `${numeral(body.mass)} kg`]);
     }
     return rows;
