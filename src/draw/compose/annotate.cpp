@@ -32,6 +32,7 @@ constexpr double kOutOfBall = 0.6;  // of a ball's radius: how far beyond it wor
 
 constexpr double kOnArrow = 16, kOnArrowInPrint = 4;   // of each unit of an arrow under words
 constexpr double kBeside = 2.3, kBesideInPrint = 2.1;  // gaps: from an arrow to its words
+constexpr double kOffTip = 0.6;                        // of each unit from an axis's tip to its name
 constexpr double kLate = 0.5;  // of each unit by which words are not where their arrow is
 constexpr double kRing = 26;   // points: how far around a body words of short arrows stand at most
 
@@ -119,6 +120,9 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   const double gap = (film() ? kBeside : kBesideInPrint) * gap_;
   std::vector<Placing::Candidate> places =
       Placing::along(from, beyond, gap, size(label), point_, film(), past(around.along_ground, from, to));
+  // an axis is named at its tip
+  if (key.kind == WordKey::axis)
+    for (Placing::Candidate& each : places) each.cost += kOffTip * (each.center - to).norm();
   // where they are not beside it yet, or no more
   if (how_.plan && how_.survey && (from != tail || to != end)) {
     const std::vector<Placing::Candidate> beside =

@@ -32,6 +32,9 @@ constexpr double kTwoApart = 6.5;  // the same where there are two: their digits
 constexpr int kMostSteps = 20;     // of an axis: that are looked at for two numbers
 constexpr double kEachTick = 18;   // points: of the values' axis
 constexpr double kAboveEnd = 3;    // points: how high above the axis the middle of a name at an end is
+constexpr double kBesideEnd = 4, kLedTo = 13;  // points: from an end to its name, and to one with a leader
+constexpr double kOffEnd = 0.75;               // of its height: a name farther off its end has a leader
+constexpr double kNameLeader = 0.4;            // points
 constexpr double kLeft = 0.05;  // of the width: a line that ends so far from the right is named where it ends
 constexpr int kMostDecades = 7;  // with a number each
 
@@ -179,6 +182,17 @@ Point end_of(const Plot& plot, const PlotArea& area, const Series& line) {
 /// Whether it ends far from the right side, where its name would be looked for in vain.
 bool leaves(const Plot& plot, const PlotArea& area, const Point& end) {
   return plot.range && end.x() < area.right - kLeft * (area.right - area.left);
+}
+
+/// Where names stand far off the ends of their lines they get leaders, and room for these.
+void lead_names(const Plot& plot, PlotArea& area) {
+  if (!named(plot) || !area.key.empty()) return;
+  for (std::size_t i = 0; i < plot.lines.size(); ++i) {
+    const Point end = end_of(plot, area, plot.lines[i]);
+    if (!leaves(plot, area, end))
+      area.led = area.led || std::abs(area.names[i] - end.y()) > kOffEnd * area.heights[i];
+  }
+  if (area.led) area.right -= (kLedTo - kBesideEnd) * area.point;
 }
 
 }  // namespace
@@ -408,8 +422,14 @@ void draw_names(const Plot& plot, const PlotArea& area, const Palette& colours, 
             [&](std::size_t a, std::size_t b) { return area.names[a] > area.names[b]; });
   for (const std::size_t i : order) {
     const Point end = end_of(plot, area, plot.lines[i]);
-    const double x = leaves(plot, area, end) ? end.x() : area.right;
-    draw_name(plot, i, area, {x + 4 * area.point, area.names[i]}, colours, list);
+    const bool gone = leaves(plot, area, end);
+    const double x = gone ? end.x() : area.right, unit = area.point, width = kNameLeader * unit;
+    const Point at(x + (area.led && !gone ? kLedTo : kBesideEnd) * unit, area.names[i]);
+    if (area.led && !gone) {
+      const Color color = plot.lines[i].color;
+      list.add({{{x + 2 * unit, end.y()}, width, color}, {at - Point(2 * unit, 0), width, color}}, Cap::butt);
+    }
+    draw_name(plot, i, area, at, colours, list);
   }
 }
 
@@ -420,6 +440,7 @@ void draw_plots(const std::vector<Plot>& plots, const Palette& colours, const st
   for (std::size_t i = 0; i < plots.size(); ++i) {
     if (plots[i].lines.empty() || along(plots[i], plots[i].lines.front()).size() < 2) continue;
     shown.push_back(&plots[i]), areas.push_back(plot_area(plots[i], rects[i], type_scale * kPoint));
+    lead_names(*shown.back(), areas.back());
   }
   std::vector<PlotArea*> all;
   for (PlotArea& area : areas) all.push_back(&area);

@@ -51,6 +51,7 @@ struct PlotArea {
   std::vector<double> names;                        // one a line: the height of its name's middle
   double title = 0;                                 // page units: its baseline
   double names_type = 1;                            // of the type's size: that of names
+  bool led = false;                                 // whether leaders go from lines' ends to their names
   std::vector<double> heights;                      // page units: of names, one a line
   std::vector<Point> key;  // where each line's entry in a key begins; none: names are beside their lines
 
