@@ -480,20 +480,22 @@ void PlaneIterative::share_free_motion(StepPart<D> part) {
   const double h = part.h, fraction = 1 / double(substeps_), half = 0.5 * h;
   const double late = smooth ? -12 * fraction / h * fraction * ((part.substep + 0.5) * fraction - 0.5) : 0;
   const double bends = smooth ? fraction * fraction * fraction : fraction;
-  for (std::size_t i = 0; i < turns_.size(); ++i) {
-    Motion &v = moving_[i], &dv = dv_[i];
-    const Motion &gain = gain_[i], &bend = bend_[i];
-    if (v.im == 0) {
-      old_[i] = v = dv = dx_[i] = {};
-      continue;
+  each(workers(), int(turns_.size()), kBodyPiece, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      Motion &v = moving_[i], &dv = dv_[i];
+      const Motion &gain = gain_[i], &bend = bend_[i];
+      if (v.im == 0) {
+        old_[i] = v = dv = dx_[i] = {};
+        continue;
+      }
+      old_[i] = v;
+      dv = {fraction * gain.x + late * bend.x, fraction * gain.y + late * bend.y,
+            fraction * gain.w + late * bend.w, 0};
+      dx_[i] = {h * v.x + (half * dv.x + bends * bend.x), h * v.y + (half * dv.y + bends * bend.y),
+                h * v.w + (half * dv.w + bends * bend.w), 0};
+      v.x += dv.x, v.y += dv.y, v.w += dv.w;
     }
-    old_[i] = v;
-    dv = {fraction * gain.x + late * bend.x, fraction * gain.y + late * bend.y,
-          fraction * gain.w + late * bend.w, 0};
-    dx_[i] = {h * v.x + (half * dv.x + bends * bend.x), h * v.y + (half * dv.y + bends * bend.y),
-              h * v.w + (half * dv.w + bends * bend.w), 0};
-    v.x += dv.x, v.y += dv.y, v.w += dv.w;
-  }
+  });
 }
 
 void PlaneIterative::moved_by_joints(const State<D>& state, int body) {

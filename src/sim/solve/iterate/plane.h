@@ -9,6 +9,7 @@
 #include "sim/math/islands.h"
 #include "sim/solve/iterate/exact_island.h"
 #include "sim/solve/iterate/iterative.h"
+#include "sim/solve/iterate/pieces.h"
 #include "sim/solve/iterate/plane_contact_rows.h"
 #include "sim/solve/iterate/plane_impacts.h"
 #include "sim/solve/iterate/plane_pair_cache.h"
@@ -84,7 +85,7 @@ class PlaneIterative final : public Iterative<2> {
   void write_lane(const plane::Pair& pair, const State<D>& state);
   void first_guess(State<D>& state);
   template <class Act>
-  void by_colour(const Act& act);
+  void by_colour(const Act& act, int piece = kPlaneBatchPiece);
   template <class Act>
   void by_colour(std::span<const int> batches, const Act& act);
   plane::StepConstants constants_from(int batch) const;
@@ -158,6 +159,7 @@ class PlaneIterative final : public Iterative<2> {
     plane::LaneList slow, fast;
   };
   std::vector<Seen> seen_;
+  std::vector<int> iterated_;  // pieces of an iteration: how many pairs
   // of an island at rest: its pairs, by lane, and batches of its own
   std::vector<int> rest_;
   std::vector<plane::ContactBatch> rest_batches_;

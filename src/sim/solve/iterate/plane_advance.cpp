@@ -26,16 +26,8 @@ void PlaneIterative::place_bodies(StepPart<D> part) {
   for (const int i : slow_)
     closing_[batches_[i / kLanes].a[i % kLanes]] = closing_[batches_[i / kLanes].b[i % kLanes]] = 1;
 
-  for (int i = 0; i < n; ++i) {
-    if (moving_[i].im == 0) continue;
-    const Motion &v = moving_[i], &o = old_[i];
-    const double far = 0.5 * kSight * cores_.half_thickness[i];
-    Motion d;
-    if (impacts_.last(i) >= 0 || h * h * (o.x * o.x + o.y * o.y) > far * far) {
-      d = course(i, h);
-    } else {
-      d = closing_[i] ? Motion{h * v.x, h * v.y, h * v.w, 0} : mean_way(i, h);
-    }
+  const auto move = [&](int i, Motion d) {
+    const Motion& v = moving_[i];
     if (correct) d.x += push_[i].x, d.y += push_[i].y, d.w += push_[i].w;
     state.x[i][0] = poses_[i].x += d.x, state.x[i][1] = poses_[i].y += d.y;
     state.v[i][0] = v.x, state.v[i][1] = v.y;
@@ -43,9 +35,26 @@ void PlaneIterative::place_bodies(StepPart<D> part) {
       state.spin[i - still][0] = v.w;
       state.turn[i - still][0] = turns_[i] += d.w;
     }
-  }
+  };
+  // what is struck or fast looks at the ways of those around it, and may lose its velocity: one by one
+  const auto alone = [&](int i) {
+    const Motion& o = old_[i];
+    const double far = 0.5 * kSight * cores_.half_thickness[i];
+    return impacts_.last(i) >= 0 || h * h * (o.x * o.x + o.y * o.y) > far * far;
+  };
+  for (int i = 0; i < n; ++i)
+    if (moving_[i].im != 0 && alone(i)) move(i, course(i, h));
+  each(workers(), n, kBodyPiece, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const Motion& v = moving_[i];
+      if (v.im != 0 && !alone(i))
+        move(i, closing_[i] ? Motion{h * v.x, h * v.y, h * v.w, 0} : mean_way(i, h));
+    }
+  });
   place_driven(state);
-  plane::turn_all(turns_.data() + still, poses_.data() + still, n - still);
+  each(workers(), n - still, kBodyPiece, [&](int begin, int end) {
+    plane::turn_all(turns_.data() + still + begin, poses_.data() + still + begin, end - begin);
+  });
 }
 
 // by the mean of old and new velocity

@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "sim/math/orientation.h"
+#include "sim/math/workers.h"
+#include "sim/solve/iterate/pieces.h"
 
 namespace obscura::sim::plane {
 
@@ -162,7 +164,29 @@ void NearPairs::collide_box_pairs(const std::vector<Pose>& poses) {
     }
     m.a[c.meeting % kLanes] = a, m.b[c.meeting % kLanes] = b;
   }
-  plane::collide_boxes(manifolds_.data(), (count + kLanes - 1) / kLanes, poses.data(), halves_.data());
+  sim::each(model_.workers.get(), (count + kLanes - 1) / kLanes, kPlaneBatchPiece, [&](int begin, int end) {
+    plane::collide_boxes(manifolds_.data() + begin, end - begin, poses.data(), halves_.data());
+  });
+}
+
+void NearPairs::find_outdated(const std::vector<ContactBatch>& batches, const std::vector<Motion>& v,
+                              const std::vector<Pose>& poses, double share, std::vector<ChangedPair>& boxes,
+                              LaneList& others) {
+  const int count = int(batches.size()), piece = model_.workers ? kActiveBatchPiece : std::max(1, count);
+  const std::size_t pieces = std::size_t(count + piece - 1) / std::size_t(piece);
+  if (outdated_.size() < pieces) outdated_.resize(pieces);
+  for (Outdated& found : outdated_) found.boxes.clear(), found.others.clear();
+  sim::each(model_.workers.get(), count, piece, [&](int begin, int end) {
+    Outdated& found = outdated_[std::size_t(begin / piece)];
+    plane::find_outdated(batches.data() + begin, end - begin, v.data(), poses.data(), halves_.data(), share,
+                         found.boxes, found.others);
+    for (int& lane : found.others) lane += kLanes * begin;
+  });
+  boxes.clear(), others.clear();
+  for (const Outdated& found : outdated_) {
+    boxes.insert(boxes.end(), found.boxes.begin(), found.boxes.end());
+    others.insert(others.end(), found.others.begin(), found.others.end());
+  }
 }
 
 }  // namespace obscura::sim::plane

@@ -57,10 +57,7 @@ class NearPairs {
   bool boxes(int a, int b) const { return halves_[a].wide > 0 && halves_[b].wide > 0; }
   void find_outdated(const std::vector<ContactBatch>& batches, const std::vector<Motion>& v,
                      const std::vector<Pose>& poses, double share, std::vector<ChangedPair>& boxes,
-                     LaneList& others) const {
-    plane::find_outdated(batches.data(), int(batches.size()), v.data(), poses.data(), halves_.data(), share,
-                         boxes, others);
-  }
+                     LaneList& others);
 
  private:
   // a body in one cache line
@@ -90,6 +87,12 @@ class NearPairs {
   Islands groups_;             // bodies that may be thrown against each other
   std::vector<Candidate> candidates_;
   std::vector<BoxManifold> manifolds_;
+  // what a piece of find_outdated() has found
+  struct Outdated {
+    std::vector<ChangedPair> boxes;
+    LaneList others;
+  };
+  std::vector<Outdated> outdated_;
   double calm_ = 0;        // m: how far a calm body may move
   double elasticity_ = 0;  // the largest of all bodies and walls
 };

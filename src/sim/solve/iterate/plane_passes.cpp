@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 
 #include "sim/solve/iterate/pieces.h"
 #include "sim/solve/iterate/plane.h"
@@ -11,16 +12,16 @@ namespace obscura::sim {
 
 using plane::kLanes;
 
-// act(begin, end, number) for all batches; the numbers of pieces ascend as these do
+// act(begin, end, number) for all batches; the numbers of pieces, of so many batches, ascend as these do
 template <class Act>
-void PlaneIterative::by_colour(const Act& act) {
+void PlaneIterative::by_colour(const Act& act, int piece) {
   if (!workers()) return act(0, int(batches_.size()), 0);
   const int colours = int(begin_.size()) - 1;
   for (int colour = 0; colour < colours; ++colour) {
     const int first = begin_[std::size_t(colour)] / kLanes, last = begin_[std::size_t(colour) + 1] / kLanes;
-    const auto number = [&](int at) { return (first + at) / kPlaneBatchPiece + colour; };
+    const auto number = [&](int at) { return (first + at) / piece + colour; };
     if (colour + 1 < colours) {
-      each(workers(), last - first, kPlaneBatchPiece,
+      each(workers(), last - first, piece,
            [&](int begin, int end) { act(first + begin, first + end, number(begin)); });
     } else if (first < last) {
       act(first, last, number(0));  // pairs for which no colour was left share bodies
@@ -86,10 +87,16 @@ int PlaneIterative::iterate_active() {
   std::atomic<int> pairs = 0;
   const std::vector<int>& groups = active_bodies_.groups;
   if (groups.empty()) {
-    by_colour([&](int begin, int end, int) {
-      pairs += plane::iterate(batches_.data() + begin, nullptr, end - begin, poses_.data(), moving_.data(),
-                              constants_from(begin), active_bodies_);
-    });
+    // a number of each piece's own: threads would wait for each other at one
+    iterated_.assign(seen_.size(), 0);
+    by_colour(
+        [&](int begin, int end, int number) {
+          iterated_[std::size_t(number)] =
+              plane::iterate(batches_.data() + begin, nullptr, end - begin, poses_.data(), moving_.data(),
+                             constants_from(begin), active_bodies_);
+        },
+        kActiveBatchPiece);
+    pairs = std::accumulate(iterated_.begin(), iterated_.end(), 0);
   } else {
     by_colour(groups, [&](int begin, int end) {
       pairs += plane::iterate(batches_.data(), groups.data() + begin, end - begin, poses_.data(),
