@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -532,6 +533,44 @@ TEST(Labels, StandBesideTheAxesOfSpace) {
                 << x << " " << y << " on " << axis.transpose() << " from " << azimuth << " " << elevation;
         }
     }
+}
+
+/// In space axes are named past their tips, beside them where another is in the way, as in one of these
+/// views.
+TEST(Labels, OfAxesInSpaceStandAtTheirTips) {
+  Made made;
+  made.cast.dimension = 3, made.cast.scale = 2;
+  made.wall({0, 0, 0}, {0, 1, 0});
+  made.extent = {{-2, 0, -2}, {2, 2, 2}};
+  Marks marks;
+  marks.axes = true;
+  int past = 0;
+  for (const double azimuth : {-40, 30, 75, 160})
+    for (const double elevation : {15, 25, 50}) {
+      Camera camera = slant();
+      camera.azimuth = azimuth * std::numbers::pi / 180,
+      camera.elevation = elevation * std::numbers::pi / 180;
+      const Illustrator artist(made.cast, made.look, {camera}, made.extent, 16.0 / 9);
+      const Projection projection = artist.projection(0, made.now);
+      RunAhead ahead{{made.now}, {0}, {}, {}, {}};
+      const Annotations annotations(marks, artist, ahead, {}, 60, 0);
+      List list;
+      annotations.draw(0, projection, made.now, 0, list);
+      const double length = 0.36 * std::min(projection.window().width, projection.window().height) /
+                            projection.scale_at({0, 0, 0});
+      const Point origin = projection.page({0, 0, 0});
+      for (int axis = 0; axis < 3; ++axis) {
+        const Text* text = said(list, std::array{"x", "y", "z"}[std::size_t(axis)]);
+        ASSERT_TRUE(text);
+        const Point way = projection.page(length * sim::Vec3::Unit(axis)) - origin;
+        // a letter reaches up by about half of its size
+        const Point at(middle(*text), text->at.y() - 0.25 * text->spans[0].size);
+        const double along = (at - origin).dot(way) / way.squaredNorm();
+        EXPECT_GT(along, 0.8) << axis << " from " << azimuth << " " << elevation;
+        past += along > 1;
+      }
+    }
+  EXPECT_GE(past, 35) << "of 36";
 }
 
 /// Axes lie under the plates of words, other arrows over them.

@@ -126,6 +126,46 @@ TEST(Plot, ARangeCutsLinesOffAndNamesThemWhereTheyLeave) {
   EXPECT_EQ(names.texts.size(), 2u);
 }
 
+/// The leaders of a plot for print: strokes between the right end of the axis and the edge.
+std::vector<std::pair<Point, Point>> leaders_of(const Plot& plot) {
+  List list;
+  draw_plots({plot}, palette(Theme::paper), {kRect}, 1, list);
+  double axis = 0;  // the right end of the axis of times
+  for (const Stroke& stroke : list.strokes)
+    if (stroke.end - stroke.begin == 2) {
+      const Point a = list.nodes[std::size_t(stroke.begin)].at,
+                  b = list.nodes[std::size_t(stroke.begin) + 1].at;
+      if (a.y() == b.y() && a.x() < b.x() && b.x() - a.x() > kRect.width / 2) axis = std::max(axis, b.x());
+    }
+  std::vector<std::pair<Point, Point>> found;
+  for (const Stroke& stroke : list.strokes) {
+    const Point a = list.nodes[std::size_t(stroke.begin)].at, b = list.nodes[std::size_t(stroke.end) - 1].at;
+    if (a.x() > axis && b.x() > axis) found.emplace_back(a, b);
+  }
+  return found;
+}
+
+/// Names that stand far off the ends of their lines have leaders from there; where all stand beside them
+/// there are none, nor of lines that end before.
+TEST(Plot, NamesOffTheEndsOfTheirLinesHaveLeaders) {
+  Plot plot = plot_of({1, 1, 1, 1, 0});
+  plot.lines[0].label = "a";
+  plot.lines.push_back({"b", {1, 0.5, 0.2, 0.1, 0}});
+  plot.lines.push_back({"c", {1, 0.5, 0.2, 0.1, 0.01}});
+  const auto found = leaders_of(plot);
+  ASSERT_EQ(found.size(), 3u);
+  double lowest = -1e9, highest = 1e9;
+  for (const auto& [end, name] : found) {
+    EXPECT_LT(end.x(), name.x());
+    lowest = std::max(lowest, end.y()), highest = std::min(highest, end.y());
+  }
+  EXPECT_NEAR(highest, lowest, 0.02 * kRect.height) << "they begin where the lines end";
+  plot.lines[1].values.back() = 0.5, plot.lines[2].values.back() = 1;
+  EXPECT_TRUE(leaders_of(plot).empty());
+  plot.lines[1].values = {1, 0.5, 0}, plot.lines[2].values.back() = 0;
+  EXPECT_EQ(leaders_of(plot).size(), 2u) << "one ends in the middle";
+}
+
 TEST(Plot, AnAxisSaysQuantityOverUnit) {
   EXPECT_EQ(over_unit("E", "J"), "E / \"J\"");
   EXPECT_EQ(over_unit("v", "m/s"), "v / \"m s\"^{-1}");

@@ -26,7 +26,10 @@ constexpr double kOffAxis = 2, kOverArea = 4;  // points: how far names keep off
 // of its width: how tall a plot against a quantity is at most at the right, where it would be a strip; of
 // what its axis spans: how far it goes on beyond, so that a line does not run along the other axis
 constexpr double kTallest = 1.1, kBeyondEnds = 0.05;
-constexpr double kAround = 0.8;  // around a head, points
+constexpr double kAround = 0.8;         // around a head, points
+constexpr double kLettersReach = 0.35;  // of a name's height: as far its letters reach from its middle
+constexpr double kOffZero = 1;          // points: where the line at zero ends under it
+constexpr double kLedWithin = 0.5;      // of a name's height: farther off its head its leader is whole
 constexpr double kMarkerAround =
     1.3;                         // the same of a marker with corners, whose edges are nearer to its middle
 constexpr double kFade = 0.008;  // of the run: how long before and after a name changes places it is faint
@@ -89,7 +92,7 @@ Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots,
   const std::vector<Rect> rects = places_of(charts, aspect, foot);
   for (std::size_t i = 0; i < charts.size(); ++i) {
     const double point = kType * page_weight(aspect) * type_scale;
-    panels_.push_back({charts[i], plots[i], plot_area(plots[i], rects[i], point), {}, {}});
+    panels_.push_back({charts[i], plots[i], plot_area(plots[i], rects[i], point), {}, {}, false});
     PlotArea& area = panels_.back().area;
     if (charts[i].against.empty())
       area.last = seconds;
@@ -150,7 +153,13 @@ void Charts::place_names(Panel& panel, const Rect& rect, double seconds) const {
       for (const Point& end : ends[k]) heights[k].push_back(end.y());
     const auto [low, high] = room_for_names(area);
     panel.names = names_beside(heights, area.heights, low, high);
-    if (panel.unseen() <= kMostUnseen) return;
+    if (panel.unseen() <= kMostUnseen) {
+      for (std::size_t i = 0; i < area.heights.size(); ++i)
+        for (const double off : panel.names.offsets[i])
+          panel.leads = panel.leads || std::abs(off) > kOffLine * area.heights[i];
+      if (panel.leads) area.right -= kLeaderRoom * unit;
+      return;
+    }
     // their places say nothing of whose they are
     area = plot_area(panel.plot, rect, unit, true);
     area.last = seconds;
@@ -209,8 +218,14 @@ double Charts::Panel::offset(std::size_t line, double time) const {
   return all[next - 1] + u * (all[next] - all[next - 1]);
 }
 
+double Charts::Panel::led(std::size_t line, double time) const {
+  if (!leads) return 0;
+  const double u = (std::abs(offset(line, time)) / area.heights[line] - kOffLine) / kLedWithin;
+  return std::clamp(u, 0.0, 1.0);
+}
+
 Point Charts::Panel::beside(std::size_t line, double time) const {
-  const Point right((kHead + kBeside) * area.point, 0);
+  const Point right((kHead + kBeside + (leads ? kLeaderRoom : 0)) * area.point, 0);
   if (around.empty()) return right + Point(0, names.offsets.empty() ? 0 : offset(line, time));
   // a side holds from half-way between two of the plot's times, where its name is unseen
   const std::vector<double>& times = plot.times;
@@ -224,6 +239,23 @@ std::vector<Charts::Shown> Charts::shown() const {
   std::vector<Shown> all;
   for (const Panel& panel : panels_) all.push_back({panel.chart, panel.plot, panel.area});
   return all;
+}
+
+// the line at zero goes on to the right: under letters it is not drawn
+void Charts::end_zero_line(const Panel& panel, std::size_t line, const Point& name, double seen,
+                           List& list) const {
+  const PlotArea& area = panel.area;
+  const double reach = kLettersReach * area.heights[line];
+  if (!named(panel.plot) || !(area.low < 0) || std::abs(name.y() - area.at(area.first, 0).y()) >= reach)
+    return;
+  const double width = width_of_name(panel.plot, line, area), off = kOffZero * area.point;
+  Box plate;
+  plate.center = name + Point(width / 2, 0), plate.x_axis = {1, 0}, plate.half = {width / 2 + off, reach};
+  plate.fill = colours_.ground;
+  plate.fill.a = std::uint8_t(std::lround(plate.fill.a * std::clamp(seen, 0.0, 1.0)));
+  list.halo(true);
+  list.add(plate);
+  list.halo(false);
 }
 
 void Charts::draw_still(List& list) const {
@@ -299,8 +331,12 @@ void Charts::draw_lines(const std::vector<RunInstant>& nows, List& list) const {
       const double time = past_times[i];
       const Point beside = inside ? panel.beside(i, time) : Point((kHead + kBeside) * unit, 0);
       const double lowest = panel.area.bottom - kAboveAxis * unit;
-      draw_name(panel.plot, i, panel.area, {at.x() + beside.x(), std::min(at.y() + beside.y(), lowest)},
-                colours_, list, inside ? panel.seen(i, time) : 1);
+      const Point name(at.x() + beside.x(), std::min(at.y() + beside.y(), lowest));
+      const double seen = inside ? panel.seen(i, time) : 1;
+      if (const double led = inside && within[i] ? panel.led(i, time) : 0; led > 0)
+        lead_to_name(at + Point(kHead * unit, 0), name, line.color, unit, list, led * seen);
+      if (over_time && !keyed) end_zero_line(panel, i, name, seen, list);
+      draw_name(panel.plot, i, panel.area, name, colours_, list, seen);
     }
   }
   list.of({});

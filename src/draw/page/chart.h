@@ -76,17 +76,21 @@ class Charts {
     PlotArea area;
     NamePlaces names;                        // at each of the plot's times
     std::vector<std::vector<Point>> around;  // against a quantity: from a line's head to its name
+    bool leads = false;                      // whether any name has a leader at any time
     double offset(std::size_t line, double time) const;
     /// From the head of a line to the middle of its name's left end.
     Point beside(std::size_t line, double time) const;
     /// s: when the name of a line changes places for the nth time.
     double change(std::size_t line, std::size_t number) const;
+    /// How well the leader to its name is seen, 0 to 1: not where the name is beside its head.
+    double led(std::size_t line, double time) const;
     /// How well its name is seen, 0 to 1.
     double seen(std::size_t line, double time) const;
     /// For which part of the run names are not seen, of all names together.
     double unseen() const;
   };
   void place_names(Panel& panel, const Rect& rect, double seconds) const;
+  void end_zero_line(const Panel& panel, std::size_t line, const Point& name, double seen, List& list) const;
   static std::vector<std::vector<Point>> heads(const Panel& panel);
   std::vector<Panel> panels_;
   Palette colours_;

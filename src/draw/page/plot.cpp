@@ -32,9 +32,7 @@ constexpr double kTwoApart = 6.5;  // the same where there are two: their digits
 constexpr int kMostSteps = 20;     // of an axis: that are looked at for two numbers
 constexpr double kEachTick = 18;   // points: of the values' axis
 constexpr double kAboveEnd = 3;    // points: how high above the axis the middle of a name at an end is
-constexpr double kBesideEnd = 4, kLedTo = 13;  // points: from an end to its name, and to one with a leader
-constexpr double kOffEnd = 0.75;               // of its height: a name farther off its end has a leader
-constexpr double kNameLeader = 0.4;            // points
+constexpr double kBesideEnd = 4;   // points: from an end to its name
 constexpr double kLeft = 0.05;  // of the width: a line that ends so far from the right is named where it ends
 constexpr int kMostDecades = 7;  // with a number each
 
@@ -179,9 +177,14 @@ Point end_of(const Plot& plot, const PlotArea& area, const Series& line) {
   return end;
 }
 
-/// Whether it ends far from the right side, where its name would be looked for in vain.
+/// Whether a line ends at the right side, where its name is.
+bool comes_to_its_name(const PlotArea& area, const Point& end) {
+  return end.x() >= area.right - kLeft * (area.right - area.left);
+}
+
+/// Whether it ends far from there, where its name would be looked for in vain.
 bool leaves(const Plot& plot, const PlotArea& area, const Point& end) {
-  return plot.range && end.x() < area.right - kLeft * (area.right - area.left);
+  return plot.range && !comes_to_its_name(area, end);
 }
 
 /// Where names stand far off the ends of their lines they get leaders, and room for these.
@@ -189,10 +192,10 @@ void lead_names(const Plot& plot, PlotArea& area) {
   if (!named(plot) || !area.key.empty()) return;
   for (std::size_t i = 0; i < plot.lines.size(); ++i) {
     const Point end = end_of(plot, area, plot.lines[i]);
-    if (!leaves(plot, area, end))
-      area.led = area.led || std::abs(area.names[i] - end.y()) > kOffEnd * area.heights[i];
+    if (comes_to_its_name(area, end))
+      area.led = area.led || std::abs(area.names[i] - end.y()) > kOffLine * area.heights[i];
   }
-  if (area.led) area.right -= (kLedTo - kBesideEnd) * area.point;
+  if (area.led) area.right -= kLeaderRoom * area.point;
 }
 
 }  // namespace
@@ -423,12 +426,10 @@ void draw_names(const Plot& plot, const PlotArea& area, const Palette& colours, 
   for (const std::size_t i : order) {
     const Point end = end_of(plot, area, plot.lines[i]);
     const bool gone = leaves(plot, area, end);
-    const double x = gone ? end.x() : area.right, unit = area.point, width = kNameLeader * unit;
-    const Point at(x + (area.led && !gone ? kLedTo : kBesideEnd) * unit, area.names[i]);
-    if (area.led && !gone) {
-      const Color color = plot.lines[i].color;
-      list.add({{{x + 2 * unit, end.y()}, width, color}, {at - Point(2 * unit, 0), width, color}}, Cap::butt);
-    }
+    const double unit = area.point, off = (kBesideEnd + (area.led && !gone ? kLeaderRoom : 0)) * unit;
+    const Point at((gone ? end.x() : area.right) + off, area.names[i]);
+    if (area.led && comes_to_its_name(area, end))
+      lead_to_name({area.right, end.y()}, at, plot.lines[i].color, unit, list);
     draw_name(plot, i, area, at, colours, list);
   }
 }

@@ -21,8 +21,9 @@ constexpr double kLeastAxis = 18;  // points: a key leaves it that much
 constexpr double kMostKey = 0.34;  // of the axis: what a key takes of it before its type gets smaller
 constexpr double kSample = 19, kAfterSample = 4, kKeyGap = 13, kAfterTitle = 16;  // points
 constexpr double kAroundName = 0.12;                                              // of the em
-constexpr double kNameAboveAxis = 4.5;  // points: the middle of a name is so high at least
-constexpr double kSampleMarker = 2.1;   // points
+constexpr double kNameAboveAxis = 4.5;             // points: the middle of a name is so high at least
+constexpr double kSampleMarker = 2.1;              // points
+constexpr double kNameLeader = 0.4, kOffEnds = 2;  // points: how wide a leader is, how far off what it joins
 
 Formula name_of(const Series& line, double type, Color color) {
   return formula(line.label + line.note, type, color);
@@ -136,6 +137,12 @@ void draw_name(const Plot& plot, std::size_t line, const PlotArea& area, const P
   color.a = std::uint8_t(std::lround(color.a * std::min(seen, 1.0)));
   const double type = area.names_type * kPlotType * area.point;
   add(name_of(its, type, color), at + Point(0, kNameMiddle * type), list);
+}
+
+void lead_to_name(const Point& end, const Point& name, Color color, double unit, List& list, double seen) {
+  color.a = std::uint8_t(std::lround(color.a * std::clamp(seen, 0.0, 1.0)));
+  const Point from = end + Point(kOffEnds * unit, 0), to = name - Point(kOffEnds * unit, 0);
+  list.add({{from, kNameLeader * unit, color}, {to, kNameLeader * unit, color}}, Cap::butt);
 }
 
 std::vector<int> by_height(const std::vector<double>& wanted) {

@@ -8,6 +8,9 @@ inline constexpr double kPlotType = 8.5;      // points: em of all words of a pl
 inline constexpr double kNameMiddle = 0.24;   // of the em: from the baseline up to the middle of a name
 inline constexpr double kTitleBaseline = 10;  // points: from the axis up to its title's baseline
 
+inline constexpr double kLeaderRoom = 9;  // points: how much farther from its line a name with a leader is
+inline constexpr double kOffLine = 0.75;  // of its height: a name farther off its line has a leader
+
 /// Whether lines need names. One that is alone is named by its axis.
 bool named(const Plot& plot);
 
@@ -24,6 +27,10 @@ double widest_name(const Plot& plot, const PlotArea& area);
 
 /// How wide that of one line is.
 double width_of_name(const Plot& plot, std::size_t line, const PlotArea& area);
+
+/// The line from the end of a line of a plot to its name, whose left end's middle is at `name`. `seen`: from
+/// 0, not at all, to 1.
+void lead_to_name(const Point& end, const Point& name, Color color, double unit, List& list, double seen = 1);
 
 /// From where to where names beside their lines may reach.
 std::pair<double, double> room_for_names(const PlotArea& area);

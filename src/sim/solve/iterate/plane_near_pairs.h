@@ -55,6 +55,7 @@ class NearPairs {
 
   /// Whether both are single boxes centred on their bodies.
   bool boxes(int a, int b) const { return halves_[a].wide > 0 && halves_[b].wide > 0; }
+  /// plane::find_outdated() of all batches, in their order, shared by the model's workers.
   void find_outdated(const std::vector<ContactBatch>& batches, const std::vector<Motion>& v,
                      const std::vector<Pose>& poses, double share, std::vector<ChangedPair>& boxes,
                      LaneList& others);

@@ -88,6 +88,8 @@ int PlaneIterative::iterate_active() {
   const std::vector<int>& groups = active_bodies_.groups;
   if (groups.empty()) {
     // a number of each piece's own: threads would wait for each other at one
+    static_assert(kActiveBatchPiece >= kPlaneBatchPiece,
+                  "there are as many numbers as pieces of a warm start");
     iterated_.assign(seen_.size(), 0);
     by_colour(
         [&](int begin, int end, int number) {
