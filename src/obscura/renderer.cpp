@@ -8,8 +8,8 @@
 
 #include "app/console/interrupt.h"
 #include "app/film/frame_renderer.h"
+#include "app/run/ahead.h"
 #include "app/run/origin.h"
-#include "app/run/plots.h"
 #include "app/run/trouble.h"
 #include "gl/context.h"
 #include "media/file.h"

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/console/exit.h"
+#include "app/run/ahead.h"
 #include "app/run/compared.h"
 #include "app/run/origin.h"
-#include "app/run/plots.h"
 #include "app/run/simulation.h"
 #include "draw/compose/annotate.h"
 #include "draw/page/titles.h"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "app/run/plots.h"
+#include "app/run/ahead.h"
 #include "app/run/simulation.h"
 #include "draw/space/outmost_places.h"
 #include "program.h"

@@ -10,8 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/run/ahead.h"
 #include "app/run/measures.h"
-#include "app/run/plots.h"
 #include "app/run/simulation.h"
 #include "draw/compose/annotations.h"
 #include "draw/page/measure.h"

@@ -10,7 +10,7 @@
 #include "app/console/say.h"
 #include "app/film/frame_renderer.h"
 #include "app/film/output.h"
-#include "app/run/plots.h"
+#include "app/run/ahead.h"
 #include "app/run/simulation.h"
 #include "app/run/trouble.h"
 #include "draw/picture/prose.h"

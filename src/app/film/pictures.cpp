@@ -1,7 +1,7 @@
 #include "app/film/pictures.h"
 
 #include "app/film/frame_renderer.h"
-#include "app/run/plots.h"
+#include "app/run/ahead.h"
 #include "app/run/simulation.h"
 #include "app/run/trouble.h"
 

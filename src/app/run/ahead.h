@@ -1,0 +1,12 @@
+#pragma once
+
+#include "app/run/simulation.h"
+#include "scene/scene.h"
+
+namespace obscura::app {
+
+/// Runs a scene once, from its start to its duration, for the charts and the marks of its film. Where the run
+/// cannot go on they end there. Throws Interrupted.
+Ahead ahead(const scene::Scene& scene);
+
+}  // namespace obscura::app
