@@ -423,6 +423,54 @@ TEST(Depict, WayThatComesBackIsDottedOnce) {
   EXPECT_LE(made.picture().moving.discs.size(), 1u);
 }
 
+/// The teeth of wheels are their edge: the disc ends at their feet and has no outline, the teeth have its
+/// fill; a body that reaches farther than its pitch circle has them as a line.
+TEST(Depict, TeethAreTheEdgeOfTheirWheels) {
+  const double pi = 3.14159265358979323846;
+  for (const bool wider : {false, true}) {
+    Made made = room(8, 4.5);
+    const int small = made.body(ShapeKind::ball, {2, 2, 0}, wider ? 0.5 : 0.4),
+              large = made.body(ShapeKind::ball, {3.2, 2, 0}, 0.8);
+    sim::SceneInfo::Joint gear;
+    gear.kind = sim::JointKind::gear, gear.a = small, gear.b = large;
+    gear.places = {{small, {0, 0, 0}}, {-1, {2, 2, 0}}, {large, {0, 0, 0}}, {-1, {3.2, 2, 0}}};
+    gear.offset_a = 0.4, gear.offset_b = 0.8;
+    gear.tooth_a = {1, 0, 0}, gear.tooth_b = {-1, 0, 0};
+    made.cast.joints.push_back(gear);
+    made.now.joints.resize(1);
+    const List list = made.picture().moving;
+    const View view = made.depictor().view(0);
+    const double high = 0.2 * 2 * pi * 0.4 / 12;  // a fifth of the distance of two teeth, of twelve
+
+    std::vector<double> radii, lines;
+    for (const Disc& disc : list.discs)
+      if (disc.radius > 0.3 * view.scale)
+        radii.push_back(disc.radius / view.scale), lines.push_back(disc.line);
+    ASSERT_EQ(radii.size(), 2u);
+    EXPECT_NEAR(radii[0], wider ? 0.5 : 0.4 - high, 1e-9);
+    EXPECT_EQ(lines[0] > 0, wider);
+    EXPECT_NEAR(radii[1], 0.8 - high, 1e-9);
+    EXPECT_EQ(lines[1], 0);
+
+    // the crests of the one lie before the feet of the other
+    int teeth[2] = {0, 0};
+    for (const Polygon& polygon : list.polygons) {
+      if (polygon.end - polygon.begin != 6) continue;
+      const bool second = polygon.fill == list.discs[1].fill;
+      ++teeth[second];
+      const Point center = view.page(second ? sim::Vec3(3.2, 2, 0) : sim::Vec3(2, 2, 0)),
+                  other = view.page(second ? sim::Vec3(2, 2, 0) : sim::Vec3(3.2, 2, 0));
+      for (int k = polygon.begin; k < polygon.end; ++k) {
+        const Point& p = list.points[std::size_t(k)];
+        EXPECT_LT((p - center).norm() / view.scale, (second ? 0.8 : 0.4) + high + 1e-9);
+        EXPECT_GT((p - other).norm() / view.scale, (second ? 0.4 : 0.8) - high - 1e-9);
+      }
+    }
+    EXPECT_EQ(teeth[0], wider ? 0 : 12);
+    EXPECT_EQ(teeth[1], 24);
+  }
+}
+
 TEST(Depict, ManyParticlesAreOneBatch) {
   Made made = room(8, 4.5);
   for (int i = 0; i < 20000; ++i) made.body(ShapeKind::point, {4, 2, 0});

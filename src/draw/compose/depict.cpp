@@ -13,6 +13,7 @@
 #include "draw/picture/formula.h"
 #include "draw/picture/joint_look.h"
 #include "draw/picture/type.h"
+#include "draw/plane/gears.h"
 #include "draw/plane/stage.h"
 #include "draw/space/camera.h"
 #include "draw/space/space.h"

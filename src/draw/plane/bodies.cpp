@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "draw/plane/gears.h"
 #include "draw/plane/stage.h"
 
 namespace obscura::draw {
@@ -12,11 +13,13 @@ constexpr double kThinOutline = 0.2;  // of a box that is small, of half its wid
 constexpr double kSmallFill = 1.6;    // how soon under that its fill is the strong one
 
 /// How a ball that turns stands: a radius, as the axes of a box are.
-void mark_turns(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+void mark_turns(const Stage& stage, const View& view, const sim::Snapshot& now, const Gears& gears,
+                List& list) {
   const double weight = stage.layout.weight;
   const auto each = [&](auto&& mark) {
     for (int i : stage.rounds) {
-      const double radius = view.scale * stage.cast.bodies[i].radius;
+      const double radius =
+          view.scale * (stage.cast.bodies[i].radius - cut_of_teeth(stage, view, now, gears, i));
       const Point center = view.page(now.bodies[i].position);
       if (!stage.cast.bodies[i].turns || radius < 7 * weight || outside(view.window, center, radius))
         continue;
@@ -43,12 +46,20 @@ Color fill_of(const Paint& paint, double half, double weight) {
 
 void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, Rank rank, List& list) {
   const double weight = stage.layout.weight;
+  const Gears gears = gears_of(stage.cast, now);
   list.boxes.reserve(stage.boxes.size());
   for (int i : stage.boxes) {
     if (stage.rank(i) != rank) continue;
     const sim::Snapshot::Body& body = now.bodies[i];
-    const Point half = view.scale * stage.cast.bodies[i].half.head<2>();
-    const Point center = view.page(body.position);
+    Point half = view.scale * stage.cast.bodies[i].half.head<2>();
+    Point center = view.page(body.position);
+    // a rack as far as its teeth, the middle of whose outline is at their feet
+    if (double cut = cut_of_teeth(stage, view, now, gears, i); cut > 0) {
+      cut -= kOutline * weight / 2 / view.scale;
+      const sim::Vec3& out = gears.racks.at(i).out;
+      half -= view.scale * cut / 2 * out.head<2>().cwiseAbs();
+      center = view.page(body.position + body.orientation * (cut / 2 * out));
+    }
     if (outside(view.window, center, half.norm())) continue;
     const double shorter = half.minCoeff();
     Box box;
@@ -70,10 +81,12 @@ void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, 
 
 void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
   const double weight = stage.layout.weight;
+  const Gears gears = gears_of(stage.cast, now);
   list.discs.reserve(list.discs.size() + stage.rounds.size());
   for (int i : stage.rounds) {
     const Point center = view.page(now.bodies[i].position);
-    const double own = stage.dots[i] > 0 ? stage.dots[i] : view.scale * stage.cast.bodies[i].radius;
+    const double cut = cut_of_teeth(stage, view, now, gears, i);
+    const double own = stage.dots[i] > 0 ? stage.dots[i] : view.scale * (stage.cast.bodies[i].radius - cut);
     const double radius = std::max(own, kLeast * weight);
     if (outside(view.window, center, radius)) continue;
     const Paint& paint = stage.paints[i];
@@ -82,11 +95,12 @@ void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now,
     if (radius < 3.2 * weight) {
       list.add(Disc{center, radius, 0, paint.outline, paint.outline});
     } else {
-      list.add(Disc{center, radius, std::min(kOutline * weight, 0.32 * radius),
+      // a wheel's outline is that of its teeth
+      list.add(Disc{center, radius, cut > 0 ? 0 : std::min(kOutline * weight, 0.32 * radius),
                     fill_of(paint, radius, weight), paint.outline});
     }
   }
-  if (stage.look.axes) mark_turns(stage, view, now, list);
+  if (stage.look.axes) mark_turns(stage, view, now, gears, list);
 }
 
 }  // namespace obscura::draw

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -26,8 +25,6 @@ constexpr double kStop = 9;   // page units: half a rail's end
 constexpr int kPieces = 24;   // of a rope that sags
 constexpr double kFar = 1e4;  // page units: a rail without an end
 constexpr double kRound = 2 * std::numbers::pi;
-constexpr int kFewestTeeth = 12;      // of the smaller wheel of a gear
-constexpr double kToothHeight = 0.2;  // of the distance of two teeth: half of a tooth
 
 Point hanging(const Point& a, const Point& b, const Point& down, double sag, double u) {
   return a + u * (b - a) + 4 * sag * u * (1 - u) * down;
@@ -135,48 +132,6 @@ void draw_bracket(const Stage& stage, const View& view, const sim::Snapshot& now
   list.add({{at - half * along, line, color}, {at + half * along, line, color}}, Cap::butt);
 }
 
-/// A wheel with teeth, which is a body.
-struct Toothed {
-  sim::SceneInfo::Joint::Place center;
-  double radius = 0;  // of its pitch circle, m
-  double first = 0;   // the angle of a tooth, in its frame, rad
-  int count = 0;      // of its teeth
-};
-
-/// The toothed wheels of a scene, by the number of their bodies: all teeth as far from each other, and those
-/// of wheels that mesh between each other.
-std::map<int, Toothed> toothed_wheels(const sim::SceneInfo& cast, const sim::Snapshot& now) {
-  const auto is_gear = [&](std::size_t i) {
-    const sim::SceneInfo::Joint& joint = cast.joints[i];
-    return joint_look(joint.kind).plane == JointMark::teeth && !now.joints[i].broken &&
-           joint.places.size() == 4 && !joint.belt;
-  };
-  double least = 1e300;
-  for (std::size_t i = 0; i < now.joints.size(); ++i) {
-    if (!is_gear(i)) continue;
-    for (const double radius : {cast.joints[i].offset_a, cast.joints[i].offset_b})
-      if (radius > 0) least = std::min(least, radius);
-  }
-  std::map<int, Toothed> wheels;
-  for (std::size_t i = 0; i < now.joints.size(); ++i) {
-    if (!is_gear(i)) continue;
-    const sim::SceneInfo::Joint& joint = cast.joints[i];
-    double between = 0;  // where the second wheel has a tooth against the first's, in teeth
-    const auto add = [&](const sim::SceneInfo::Joint::Place& at, double radius, const Vec3& meets,
-                         bool second) {
-      if (!(radius > 0) || at.body < 0) return;
-      const int count = std::max(kFewestTeeth, int(std::lround(kFewestTeeth * radius / least)));
-      const double angle = std::atan2(meets.y(), meets.x());
-      const double first = angle + (second ? between + 0.5 : 0) * kRound / count;
-      const Toothed& wheel = wheels.try_emplace(at.body, Toothed{at, radius, first, count}).first->second;
-      if (!second) between = (angle - wheel.first) * wheel.count / kRound;
-    };
-    add(joint.places[0], joint.offset_a, joint.tooth_a, false);
-    add(joint.places[2], joint.offset_b, joint.tooth_b, true);
-  }
-  return wheels;
-}
-
 }  // namespace
 
 void draw_brackets(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
@@ -199,73 +154,6 @@ void draw_brackets(const Stage& stage, const View& view, const sim::Snapshot& no
     draw_bracket(stage, view, now, walls, view.page(first ? now.joints[i].a : now.joints[i].b),
                  made_fast(stage, first ? joint.start : Vec3(-joint.start), false),
                  share_of_bracket(stage, view, first ? joint.b : joint.a), hatched, list);
-  }
-}
-
-void draw_gears(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
-  std::vector<Node> nodes;
-  for (const auto& [body, wheel] : toothed_wheels(stage.cast, now)) {
-    const Vec3 center = place_of(now, wheel.center);
-    const double pitch = kRound / wheel.count, high = kToothHeight * pitch * wheel.radius;
-    const double first = wheel.first + now.bodies[std::size_t(body)].angle;
-    const Color color = stage.paints[std::size_t(body)].outline;
-    nodes.clear();
-    const auto add = [&](double teeth, double r) {
-      const double angle = first + teeth * pitch;
-      nodes.push_back({view.page(center + r * Vec3(std::cos(angle), std::sin(angle), 0)),
-                       kSpringLine * stage.layout.weight, color});
-    };
-    for (int k = 0; k < wheel.count; ++k) {
-      add(k - 0.32, wheel.radius - high), add(k - 0.15, wheel.radius + high);
-      add(k + 0.15, wheel.radius + high), add(k + 0.32, wheel.radius - high);
-    }
-    nodes.push_back(nodes.front());
-    list.add(nodes, Cap::round);
-  }
-}
-
-// Teeth of racks, as far as their bodies reach. Where the pinion has a tooth, theirs have a gap: the place
-// that meets the rack's is at r (angle of the tooth - angle of the way there) along the rack.
-void draw_racks(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
-  const std::map<int, Toothed> wheels = toothed_wheels(stage.cast, now);
-  std::vector<Node> nodes;
-  for (std::size_t i = 0; i < now.joints.size(); ++i) {
-    const sim::SceneInfo::Joint& joint = stage.cast.joints[i];
-    if (joint_look(joint.kind).plane != JointMark::teeth || now.joints[i].broken || joint.places.size() != 4)
-      continue;
-    const bool first = !(joint.offset_a > 0);
-    if (first == !(joint.offset_b > 0)) continue;
-    const int rack = joint.places[first ? 0 : 2].body;
-    const auto found = wheels.find(joint.places[first ? 2 : 0].body);
-    if (rack < 0 || found == wheels.end()) continue;
-    const Toothed& pinion = found->second;
-    const Vec3 own = first ? joint.tooth_a : joint.tooth_b;
-    const sim::Snapshot::Body& body = now.bodies[std::size_t(rack)];
-    const Vec3 out = body.orientation * own, along(-out.y(), out.x(), 0);
-    const Vec3 foot = place_of(now, pinion.center) + pinion.radius * out;
-    // how far the body reaches along it
-    const sim::SceneInfo::Body& its = stage.cast.bodies[std::size_t(rack)];
-    const Vec3 own_along(-own.y(), own.x(), 0);
-    double reach = its.radius;
-    if (its.kind == sim::ShapeKind::box)
-      reach = std::abs(own_along.x()) * its.half.x() + std::abs(own_along.y()) * its.half.y();
-    for (const Vec3& vertex : its.vertices) reach = std::max(reach, std::abs(vertex.dot(own_along)));
-    const double middle = (body.position - foot).dot(along);
-    const double pitch = kRound / pinion.count * pinion.radius, high = kToothHeight * pitch;
-    const double tooth = pinion.radius * (pinion.first + now.bodies[std::size_t(found->first)].angle -
-                                          std::atan2(out.y(), out.x()));
-    const Color color = stage.paints[std::size_t(rack)].outline;
-    nodes.clear();
-    const auto add = [&](double x, double h) {
-      nodes.push_back({view.page(foot + x * along - h * out), kSpringLine * stage.layout.weight, color});
-    };
-    const double from = std::ceil((middle - reach - tooth) / pitch) - 0.5;
-    for (double x = tooth + from * pitch; x <= middle + reach; x += pitch) {
-      if (x - 0.32 * pitch < middle - reach || x + 0.32 * pitch > middle + reach) continue;
-      add(x - 0.32 * pitch, -high), add(x - 0.15 * pitch, high);
-      add(x + 0.15 * pitch, high), add(x + 0.32 * pitch, -high);
-    }
-    if (!nodes.empty()) list.add(nodes, Cap::round);
   }
 }
 

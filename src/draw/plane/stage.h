@@ -166,8 +166,6 @@ void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, 
 void draw_arms(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_rods(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_pulleys(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
-void draw_gears(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
-void draw_racks(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_pins(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
 /// The dotted paths of the mice, and, in front of everything, their springs and pointers.
