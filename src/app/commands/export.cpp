@@ -20,6 +20,7 @@
 #include "draw/picture/joint_look.h"
 #include "draw/picture/rope_way.h"
 #include "draw/picture/theme.h"
+#include "draw/picture/upright.h"
 #include "media/error.h"
 #include "media/file.h"
 #include "media/glb.h"
@@ -166,8 +167,7 @@ class Stage {
     const double length = way.norm(), thick = whole ? depth_ / 20 : 0;
     node.translations.push_back(narrow(Vec3((a + b) / 2)));
     node.rotations.push_back(
-        narrow(Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), length > 0 ? way : Vec3(Vec3::UnitY())),
-               node.rotations));
+        narrow(draw::turn_from_y(length > 0 ? way : Vec3(Vec3::UnitY())), node.rotations));
     node.scales.push_back(narrow(Vec3(thick, whole ? length : 0, thick)));
   }
 

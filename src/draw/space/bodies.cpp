@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "draw/picture/joint_look.h"
+#include "draw/picture/upright.h"
 #include "draw/space/space.h"
 
 namespace obscura::draw {
@@ -397,7 +398,7 @@ void add_brackets(SpaceFrame& s) {
   // from above a plate would hide what hangs from it
   if (s.lens.back.dot(up) > kFromAbove) return;
   const double whole = kBracket * s.stage.layout.weight * s.zoom / s.lens.scale;
-  const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), up).toRotationMatrix();
+  const Eigen::Matrix3d turn = turn_from_y(up).toRotationMatrix();
   const auto held = [&](const Vec3& at, double half) {
     for (const sim::SceneInfo::Wall& wall : cast.walls)
       if ((at - wall.point).dot(wall.normal.normalized()) < 2 * half) return true;

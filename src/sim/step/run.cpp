@@ -213,8 +213,11 @@ class RunOf final : public Run {
       now.bodies[i].held = then.bodies[i].held;
       now.bodies[i].torque += then.bodies[i].torque - loose.bodies[i].torque;
     }
+    // what lies there, if only after a fall that is shorter than the step
+    const double step = 1 / value(model_.rate);
     for (Snapshot::Contact each : then.contacts) {
-      if (!each.holds || !each.impulse.isZero(0)) continue;
+      if (!each.holds || each.impulse.norm() > step * each.force.norm()) continue;
+      each.impulse.setZero();
       now.contacts.push_back(each);
     }
   }
