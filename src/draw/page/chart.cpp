@@ -33,7 +33,7 @@ constexpr double kLedWithin = 0.5;      // of a name's height: farther off its h
 constexpr double kMarkerAround =
     1.3;                         // the same of a marker with corners, whose edges are nearer to its middle
 constexpr double kFade = 0.008;  // of the run: how long before and after a name changes places it is faint
-constexpr double kMostUnseen = 0.08;  // of the run: names that are unseen for longer are a key
+constexpr double kMostUnseen = 0.03;  // of the run: names that are unseen for longer are a key
 
 // The rectangles of charts on a page.
 std::vector<Rect> places_of(const std::vector<Chart>& charts, double aspect, double foot) {
