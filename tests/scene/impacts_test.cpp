@@ -335,5 +335,34 @@ TEST(Impacts, WhatBeginsAtRestIsNoWallForWhatStrikesItAtOnce) {
   }
 }
 
+// A row of balls that lie on the floor, asleep, with gaps that the first crosses within the step in which it
+// is struck: the last leaves with the speed of what struck the first, and what sleeps on the way is no wall.
+TEST(Impacts, WhatSleepsBesideWhatIsStruckIsNoWall) {
+  for (const int dimension : {2, 3}) {
+    for (const Manner& manner : kManners) {
+      for (const int rate : {60, 120, 600}) {
+        for (const double gap : {1e-4, 1e-3, 3e-3}) {
+          for (const double way : {1, -1}) {
+            SCOPED_TRACE(
+                fmt::format("{}D by {} at {}, gaps of {}, {}", dimension, manner.name, rate, gap, way));
+            const std::string more = "elasticity = 1\nfriction = 0\n";
+            std::string text =
+                fmt::format("duration = 1\n[room]\nwalls = \"ground\"\nsize = {}\n{}\nrate = {}\n",
+                            dimension == 2 ? "[8, 3]" : "[8, 3, 8]", manner.keys, rate) +
+                ball_at(dimension, "cue", 1, 4 - way, 0.1, 5 * way, 0, more);
+            for (int i = 0; i < 4; ++i)
+              text +=
+                  ball_at(dimension, fmt::format("b{}", i), 1, 4 + way * i * (0.2 + gap), 0.1, 0, 0, more);
+            const TextRun run(text);
+            const sim::Snapshot end = run.at(0.2);
+            EXPECT_NEAR(end.bodies[number_of(run, "cue")].velocity.x(), 0, 5e-6);
+            EXPECT_NEAR(end.bodies[number_of(run, "b3")].velocity.x(), 5 * way, 5e-6);
+          }
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

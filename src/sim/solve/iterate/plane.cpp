@@ -82,6 +82,8 @@ bool PlaneIterative::find_contacts(StepPart<D> step) {
   if (due || held) foresee_driven(step.t);
   if (due || held) {
     update_pairs(state, known);
+    // what has come near since the last search may strike what still sleeps
+    if (Sleep<D>::any(state) && wake_struck(state, step.h)) update_pairs(state, true);
   } else if (!known) {
     build_batches(state, false);
   }

@@ -39,6 +39,7 @@ class SpaceIterative final : public Iterative<3> {
  private:
   bool find_contacts(StepPart<D> step) override;
   void update_sleep(StepPart<D> step) override;
+  bool wake_struck(State<D>& state, double h);
   ClosingRates closing_rates(double h) const override;
   void renew_contacts(StepPart<D> part) override;
   void move_unconstrained(StepPart<D> part) override;
@@ -234,6 +235,8 @@ class SpaceIterative final : public Iterative<3> {
   BroadPhase<D> broad_;
   Response<D> response_;
   std::vector<Contact<D>> near_;
+  std::vector<double> swift_;                 // m/s: how fast bodies may become within the step,
+  std::vector<int> struck_bodies_, reached_;  // which are struck, and which of these sleep
   EnergyGuard<D> energy_guard_;
   // bodies, m: how far kinematic ones get from where their velocity takes them, and others where these
   // strike them; empty: none are kinematic
