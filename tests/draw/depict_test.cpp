@@ -468,6 +468,14 @@ TEST(Depict, TeethAreTheEdgeOfTheirWheels) {
     }
     EXPECT_EQ(teeth[0], wider ? 0 : 12);
     EXPECT_EQ(teeth[1], 24);
+
+    // an earlier instant has them too, of the bodies that it shows
+    List ghosts;
+    made.depictor().ghosts(made.now, 0.5, ghosts, {large});
+    EXPECT_EQ(ghosts.discs.size(), 1u);
+    EXPECT_EQ(std::count_if(ghosts.polygons.begin(), ghosts.polygons.end(),
+                            [](const Polygon& each) { return each.end - each.begin == 6; }),
+              24);
   }
 }
 

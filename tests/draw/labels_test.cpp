@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "draw/compose/annotations.h"
@@ -502,8 +503,8 @@ TEST(Labels, StandBesideAxes) {
   }
 }
 
-/// Beside the three of space as well, wherever they are in the picture.
-TEST(Labels, StandBesideTheAxesOfSpace) {
+/// A room of space seen from twelve sides: look(room, artist, where that is).
+void from_all_sides(const std::function<void(const Made&, const Illustrator&, const std::string&)>& look) {
   Made made;
   made.cast.dimension = 3, made.cast.scale = 2;
   made.wall({0, 0, 0}, {0, 1, 0});
@@ -513,63 +514,61 @@ TEST(Labels, StandBesideTheAxesOfSpace) {
       Camera camera = slant();
       camera.azimuth = azimuth * std::numbers::pi / 180,
       camera.elevation = elevation * std::numbers::pi / 180;
-      const Illustrator artist(made.cast, made.look, {camera}, made.extent, 16.0 / 9);
-      const Projection projection = artist.projection(0, made.now);
-      for (double x = -0.2; x < 0.21; x += 0.05)
-        for (double y = -0.2; y < 0.21; y += 0.05) {
-          Marks marks;
-          marks.axes = true;
-          Marks::Label label;
-          label.text = "E = 5 J", label.at.local = {x, y, 0};
-          marks.labels.push_back(label);
-          RunAhead ahead{{made.now}, {0}, {}, {}, {}};
-          const Annotations annotations(marks, artist, ahead, {}, 60, 0);
-          List list;
-          annotations.draw(0, projection, made.now, 0, list);
-          const Text* text = said(list, "E");
-          ASSERT_TRUE(text);
-          for (const sim::Vec3& axis : {sim::Vec3(0.5, 0, 0), sim::Vec3(0, 0.5, 0), sim::Vec3(0, 0, 0.5)})
-            EXPECT_LT(covered(*text, projection.page({0, 0, 0}), projection.page(axis)), 1)
-                << x << " " << y << " on " << axis.transpose() << " from " << azimuth << " " << elevation;
-        }
+      look(made, Illustrator(made.cast, made.look, {camera}, made.extent, 16.0 / 9),
+           "from " + std::to_string(azimuth) + " " + std::to_string(elevation));
     }
+}
+
+/// Beside the three of space as well, wherever they are in the picture.
+TEST(Labels, StandBesideTheAxesOfSpace) {
+  from_all_sides([](const Made& made, const Illustrator& artist, const std::string& from) {
+    const Projection projection = artist.projection(0, made.now);
+    for (double x = -0.2; x < 0.21; x += 0.05)
+      for (double y = -0.2; y < 0.21; y += 0.05) {
+        Marks marks;
+        marks.axes = true;
+        Marks::Label label;
+        label.text = "E = 5 J", label.at.local = {x, y, 0};
+        marks.labels.push_back(label);
+        RunAhead ahead{{made.now}, {0}, {}, {}, {}};
+        const Annotations annotations(marks, artist, ahead, {}, 60, 0);
+        List list;
+        annotations.draw(0, projection, made.now, 0, list);
+        const Text* text = said(list, "E");
+        ASSERT_TRUE(text);
+        for (const sim::Vec3& axis : {sim::Vec3(0.5, 0, 0), sim::Vec3(0, 0.5, 0), sim::Vec3(0, 0, 0.5)})
+          EXPECT_LT(covered(*text, projection.page({0, 0, 0}), projection.page(axis)), 1)
+              << x << " " << y << " on " << axis.transpose() << " " << from;
+      }
+  });
 }
 
 /// In space axes are named past their tips, beside them where another is in the way, as in one of these
 /// views.
 TEST(Labels, OfAxesInSpaceStandAtTheirTips) {
-  Made made;
-  made.cast.dimension = 3, made.cast.scale = 2;
-  made.wall({0, 0, 0}, {0, 1, 0});
-  made.extent = {{-2, 0, -2}, {2, 2, 2}};
   Marks marks;
   marks.axes = true;
   int past = 0;
-  for (const double azimuth : {-40, 30, 75, 160})
-    for (const double elevation : {15, 25, 50}) {
-      Camera camera = slant();
-      camera.azimuth = azimuth * std::numbers::pi / 180,
-      camera.elevation = elevation * std::numbers::pi / 180;
-      const Illustrator artist(made.cast, made.look, {camera}, made.extent, 16.0 / 9);
-      const Projection projection = artist.projection(0, made.now);
-      RunAhead ahead{{made.now}, {0}, {}, {}, {}};
-      const Annotations annotations(marks, artist, ahead, {}, 60, 0);
-      List list;
-      annotations.draw(0, projection, made.now, 0, list);
-      const double length = 0.36 * std::min(projection.window().width, projection.window().height) /
-                            projection.scale_at({0, 0, 0});
-      const Point origin = projection.page({0, 0, 0});
-      for (int axis = 0; axis < 3; ++axis) {
-        const Text* text = said(list, std::array{"x", "y", "z"}[std::size_t(axis)]);
-        ASSERT_TRUE(text);
-        const Point way = projection.page(length * sim::Vec3::Unit(axis)) - origin;
-        // a letter reaches up by about half of its size
-        const Point at(middle(*text), text->at.y() - 0.25 * text->spans[0].size);
-        const double along = (at - origin).dot(way) / way.squaredNorm();
-        EXPECT_GT(along, 0.8) << axis << " from " << azimuth << " " << elevation;
-        past += along > 1;
-      }
+  from_all_sides([&](const Made& made, const Illustrator& artist, const std::string& from) {
+    const Projection projection = artist.projection(0, made.now);
+    RunAhead ahead{{made.now}, {0}, {}, {}, {}};
+    const Annotations annotations(marks, artist, ahead, {}, 60, 0);
+    List list;
+    annotations.draw(0, projection, made.now, 0, list);
+    const double length = 0.36 * std::min(projection.window().width, projection.window().height) /
+                          projection.scale_at({0, 0, 0});
+    const Point origin = projection.page({0, 0, 0});
+    for (int axis = 0; axis < 3; ++axis) {
+      const Text* text = said(list, std::array{"x", "y", "z"}[std::size_t(axis)]);
+      ASSERT_TRUE(text);
+      const Point way = projection.page(length * sim::Vec3::Unit(axis)) - origin;
+      // a letter reaches up by about half of its size
+      const Point at(middle(*text), text->at.y() - 0.25 * text->spans[0].size);
+      const double along = (at - origin).dot(way) / way.squaredNorm();
+      EXPECT_GT(along, 0.8) << axis << " " << from;
+      past += along > 1;
     }
+  });
   EXPECT_GE(past, 35) << "of 36";
 }
 

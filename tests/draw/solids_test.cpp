@@ -10,6 +10,7 @@
 #include "draw/compose/annotate.h"
 #include "draw/compose/annotations.h"
 #include "draw/made.h"
+#include "draw/picture/upright.h"
 #include "draw/plane/stage.h"
 
 namespace obscura::draw {
@@ -509,6 +510,21 @@ TEST(Camera, KeepsTheCentreOfMassOfThoseItFollowsInTheMiddle) {
       made.now.bodies[std::size_t(heavy)].position.x() -= 1;
   EXPECT_NEAR(made.depictor().projection(0, made.now).page(middle).x(), 960, kExact);
   EXPECT_EQ(followed(draw::Camera{}, made.cast, made.now), std::nullopt);
+}
+
+// The turn that takes +y to a direction, also where that is all but straight down: a unit quaternion whose
+// axis is across both.
+TEST(Upright, TurnsYToAnyDirection) {
+  for (const double off : {0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.5, 2.0})
+    for (const double y : {1.0, 0.0, -1.0})
+      for (const double round : {0.3, 2.0, 4.5}) {
+        const sim::Vec3 way(off * std::cos(round), y, off * std::sin(round));
+        if (!(way.norm() > 0)) continue;
+        const Eigen::Quaterniond turn = turn_from_y(3 * way);
+        EXPECT_NEAR(turn.norm(), 1, 1e-15);
+        EXPECT_NEAR((turn * sim::Vec3::UnitY() - way.normalized()).norm(), 0, 2e-15) << way.transpose();
+        EXPECT_NEAR(turn.vec().dot(way.normalized()), 0, 1e-15) << way.transpose();
+      }
 }
 
 }  // namespace

@@ -364,5 +364,34 @@ TEST(Impacts, WhatSleepsBesideWhatIsStruckIsNoWall) {
   }
 }
 
+// The forces that the first instant shows are also those of what lies a rounding, or a fall shorter than a
+// step, above its ground; not of what falls farther, nor of what strikes it in the first step.
+TEST(Impacts, ForcesAtTheStartAreOfWhatLiesThere) {
+  struct Case {
+    double gap, down, newtons;
+  };
+  for (const int dimension : {2, 3}) {
+    for (const Manner& manner : kManners) {
+      for (const Case& each : {Case{0, 0, 9.81}, Case{1e-12, 0, 9.81}, Case{1e-6, 0, 9.81}, Case{0.05, 0, 0},
+                               Case{1e-3, 3, 0}}) {
+        SCOPED_TRACE(
+            fmt::format("{}D by {}, {} m above, {} m/s", dimension, manner.name, each.gap, each.down));
+        const TextRun run(fmt::format("duration = 1\n[room]\nwalls = \"ground\"\nsize = {}\n{}\n",
+                                      dimension == 2 ? "[8, 3]" : "[8, 3, 8]", manner.keys) +
+                          ball_at(dimension, "a", 1, 4, 0.1 + each.gap, 0, -each.down, "elasticity = 0\n"));
+        const sim::Snapshot begun = run.at(0);
+        double up = 0;
+        for (const sim::Snapshot::Contact& contact : begun.contacts) {
+          up += contact.force.y();
+          EXPECT_EQ(contact.impulse.norm(), 0);
+        }
+        // by the iterations it is the mean over the first step, in which the gap is fallen through
+        const double fall = manner.name == "iterative" && each.newtons > 0 ? each.gap * 600 * 600 : 0;
+        EXPECT_NEAR(up, each.newtons - fall, 1e-6);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

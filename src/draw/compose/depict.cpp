@@ -31,14 +31,16 @@ constexpr int kMarks = 100;  // layers up to there are of bodies and what ties t
 bool is_point(const sim::SceneInfo::Body& body) { return body.kind == sim::ShapeKind::point && !body.bare; }
 
 // the bodies with flat sides
-void draw_flats(const Stage& stage, const View& view, const sim::Snapshot& now, Rank rank, List& list) {
-  draw_boxes(stage, view, now, rank, list);
+void draw_flats(const Stage& stage, const View& view, const sim::Snapshot& now, const Gears& gears, Rank rank,
+                List& list) {
+  draw_boxes(stage, view, now, gears, rank, list);
   draw_polygons(stage, view, now, rank, list);
   draw_belts(stage, view, now, rank, false, list);
 }
 
 // bodies, what ties them, their own arrows and names
 void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+  const Gears gears = gears_of(stage.cast, now);
   int layer = 0;
   const auto draw = [&](auto&& things) {
     list.of({Subject::What::layer, layer++});
@@ -52,17 +54,17 @@ void draw_forms(const Stage& stage, const View& view, const sim::Snapshot& now, 
     draw_arms(stage, view, now, list);
   });
   draw([&] { draw_springs(stage, view, now, false, list); });
-  draw([&] { draw_flats(stage, view, now, Rank::fixed, list); });
-  draw([&] { draw_flats(stage, view, now, Rank::free, list); });
+  draw([&] { draw_flats(stage, view, now, gears, Rank::fixed, list); });
+  draw([&] { draw_flats(stage, view, now, gears, Rank::free, list); });
   draw([&] { draw_springs(stage, view, now, true, list); });
   draw([&] { draw_rods(stage, view, now, list); });
   draw([&] {
-    draw_rounds(stage, view, now, list);
+    draw_rounds(stage, view, now, gears, list);
     draw_belts(stage, view, now, Rank::free, true, list);
   });
-  draw([&] { draw_gears(stage, view, now, list); });
-  draw([&] { draw_racks(stage, view, now, list); });
-  draw([&] { draw_flats(stage, view, now, Rank::arm, list); });
+  draw([&] { draw_gears(stage, view, now, gears, list); });
+  draw([&] { draw_racks(stage, view, now, gears, list); });
+  draw([&] { draw_flats(stage, view, now, gears, Rank::arm, list); });
   draw([&] { draw_pulleys(stage, view, now, list); });
   draw([&] { draw_pins(stage, view, now, list); });
   draw([&] { draw_contacts(stage, view, now, list); });
@@ -461,9 +463,14 @@ void Illustrator::ghosts(const sim::Snapshot& then, double strength, List& list,
   std::erase_if(faded.polygons, still);
   std::erase_if(faded.rounds, still);
   if (faded.layout.clipped) list.clip(view.window);
-  draw_flats(faded, view, then, Rank::free, list);
-  draw_rounds(faded, view, then, list);
-  draw_flats(faded, view, then, Rank::arm, list);
+  Gears gears = gears_of(faded.cast, then);
+  std::erase_if(gears.wheels, [&](const auto& each) { return still(each.first); });
+  std::erase_if(gears.racks, [&](const auto& each) { return still(each.first); });
+  draw_flats(faded, view, then, gears, Rank::free, list);
+  draw_rounds(faded, view, then, gears, list);
+  draw_gears(faded, view, then, gears, list);
+  draw_racks(faded, view, then, gears, list);
+  draw_flats(faded, view, then, gears, Rank::arm, list);
   if (faded.layout.clipped) list.unclip();
 }
 

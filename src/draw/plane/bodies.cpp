@@ -44,9 +44,9 @@ Color fill_of(const Paint& paint, double half, double weight) {
   return mix(paint.fill, paint.small, std::min(kSmallFill * (1 - size), 1.0));
 }
 
-void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, Rank rank, List& list) {
+void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, const Gears& gears, Rank rank,
+                List& list) {
   const double weight = stage.layout.weight;
-  const Gears gears = gears_of(stage.cast, now);
   list.boxes.reserve(stage.boxes.size());
   for (int i : stage.boxes) {
     if (stage.rank(i) != rank) continue;
@@ -79,9 +79,9 @@ void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, 
   }
 }
 
-void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
+void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, const Gears& gears,
+                 List& list) {
   const double weight = stage.layout.weight;
-  const Gears gears = gears_of(stage.cast, now);
   list.discs.reserve(list.discs.size() + stage.rounds.size());
   for (int i : stage.rounds) {
     const Point center = view.page(now.bodies[i].position);

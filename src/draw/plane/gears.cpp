@@ -56,13 +56,12 @@ double half_along_axis(const sim::SceneInfo::Body& body, const Vec3& way) {
   return way.cwiseAbs().dot(body.half);
 }
 
-Row row(const Stage& stage, const View& view, int body, bool edge) {
-  const double weight = stage.layout.weight,
-               reach = view.scale * stage.cast.bodies[std::size_t(body)].half.norm();
-  const double radius = view.scale * stage.cast.bodies[std::size_t(body)].radius;
-  const Paint& paint = stage.paints[std::size_t(body)];
-  return {fill_of(paint, std::max(radius, reach), weight), paint.outline,
-          (edge ? kOutline : kSpringLine) * weight};
+Row row(const Stage& stage, const View& view, int index, bool edge) {
+  const double weight = stage.layout.weight;
+  const sim::SceneInfo::Body& body = stage.cast.bodies[std::size_t(index)];
+  const double half = view.scale * std::max(body.radius, body.half.head<2>().minCoeff());
+  const Paint& paint = stage.paints[std::size_t(index)];
+  return {fill_of(paint, half, weight), paint.outline, (edge ? kOutline : kSpringLine) * weight};
 }
 
 }  // namespace
@@ -101,8 +100,8 @@ Gears gears_of(const sim::SceneInfo& cast, const sim::Snapshot& now) {
     const bool first = !(joint.offset_a > 0);
     if (first == !(joint.offset_b > 0)) continue;
     const int rack = joint.places[first ? 0 : 2].body, pinion = joint.places[first ? 2 : 0].body;
-    if (rack >= 0 && all.wheels.contains(pinion))
-      all.racks.try_emplace(rack, Rack{first ? joint.tooth_a : joint.tooth_b, pinion});
+    if (const auto found = all.wheels.find(pinion); rack >= 0 && found != all.wheels.end())
+      all.racks.try_emplace(rack, Rack{first ? joint.tooth_a : joint.tooth_b, found->second});
   }
   return all;
 }
@@ -119,7 +118,7 @@ double cut_of_teeth(const Stage& stage, const View& view, const sim::Snapshot& n
     return body.kind == sim::ShapeKind::ball && off < kNear * wheel.high() ? seen(wheel.high()) : 0;
   }
   if (const auto found = gears.racks.find(index); found != gears.racks.end()) {
-    const Toothed& pinion = gears.wheels.at(found->second.pinion);
+    const Toothed& pinion = found->second.pinion;
     const double half = half_along_axis(body, found->second.out);
     const Vec3 out = now.bodies[std::size_t(index)].orientation * found->second.out;
     const double pitch_line =
@@ -131,8 +130,8 @@ double cut_of_teeth(const Stage& stage, const View& view, const sim::Snapshot& n
   return 0;
 }
 
-void draw_gears(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
-  const Gears gears = gears_of(stage.cast, now);
+void draw_gears(const Stage& stage, const View& view, const sim::Snapshot& now, const Gears& gears,
+                List& list) {
   for (const auto& [body, wheel] : gears.wheels) {
     const Vec3 center = place_of(now, wheel.center);
     const double pitch = wheel.pitch(), high = wheel.high();
@@ -154,10 +153,10 @@ void draw_gears(const Stage& stage, const View& view, const sim::Snapshot& now, 
 
 // Where the pinion has a tooth, the rack has a gap: the place that meets it is at
 // r (angle of the tooth - angle of the way there) along the rack.
-void draw_racks(const Stage& stage, const View& view, const sim::Snapshot& now, List& list) {
-  const Gears gears = gears_of(stage.cast, now);
+void draw_racks(const Stage& stage, const View& view, const sim::Snapshot& now, const Gears& gears,
+                List& list) {
   for (const auto& [index, rack] : gears.racks) {
-    const Toothed& pinion = gears.wheels.at(rack.pinion);
+    const Toothed& pinion = rack.pinion;
     const sim::Snapshot::Body& body = now.bodies[std::size_t(index)];
     const Vec3 out = body.orientation * rack.out, along(-out.y(), out.x(), 0);
     const Vec3 foot = place_of(now, pinion.center) + pinion.radius * out;
@@ -170,7 +169,7 @@ void draw_racks(const Stage& stage, const View& view, const sim::Snapshot& now, 
     for (const Vec3& vertex : its.vertices) reach = std::max(reach, std::abs(vertex.dot(own_along)));
     const double middle = (body.position - foot).dot(along);
     const double pitch = pinion.pitch() * pinion.radius, high = pinion.high();
-    const double tooth = pinion.radius * (pinion.first + now.bodies[std::size_t(rack.pinion)].angle -
+    const double tooth = pinion.radius * (pinion.first + now.bodies[std::size_t(pinion.center.body)].angle -
                                           std::atan2(out.y(), out.x()));
     const auto at = [&](double x, double h) { return view.page(foot + x * along - h * out); };
     const bool edge = cut_of_teeth(stage, view, now, gears, index) > 0;

@@ -20,7 +20,7 @@ struct Toothed {
 /// A straight body with teeth.
 struct Rack {
   sim::Vec3 out;   // in its frame, unit: away from the pinion
-  int pinion = 0;  // the body that is the wheel
+  Toothed pinion;  // the wheel that it meets
 };
 
 /// What has teeth at an instant, by the number of its body.
@@ -39,8 +39,16 @@ Gears gears_of(const sim::SceneInfo& cast, const sim::Snapshot& now);
 double cut_of_teeth(const Stage& stage, const View& view, const sim::Snapshot& now, const Gears& gears,
                     int body);
 
+/// The bodies that are boxes, of a rank, and those that are round, without their teeth.
+void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, const Gears& gears, Rank rank,
+                List& list);
+void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, const Gears& gears,
+                 List& list);
+
 /// Teeth as far as their bodies reach, over their bodies.
-void draw_gears(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
-void draw_racks(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
+void draw_gears(const Stage& stage, const View& view, const sim::Snapshot& now, const Gears& gears,
+                List& list);
+void draw_racks(const Stage& stage, const View& view, const sim::Snapshot& now, const Gears& gears,
+                List& list);
 
 }  // namespace obscura::draw

@@ -146,9 +146,7 @@ void draw_springs(const Stage& stage, const View& view, const sim::Snapshot& now
 /// Arrows at the picture's edge towards bodies with trails that have left it.
 void draw_gone(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
-void draw_boxes(const Stage& stage, const View& view, const sim::Snapshot& now, Rank rank, List& list);
 void draw_polygons(const Stage& stage, const View& view, const sim::Snapshot& now, Rank rank, List& list);
-void draw_rounds(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 void draw_velocities(const Stage& stage, const View& view, const sim::Snapshot& now, List& list);
 
 /// The forces where bodies touch that have such arrows: one arrow for two that touch, at their centre of

@@ -27,8 +27,6 @@ constexpr int kJointIterations = 16;   // with joints, which are solved exactly 
 constexpr int kStrainIterations = 64;  // if joints press a body far into another
 constexpr double kStrained = 0.02;     // how far that is, of its half thickness
 
-constexpr double kStruck = 2;  // times as fast as what strikes it: something light
-
 // iterations of push_out()
 constexpr int kProjections = 5;  // for each of a substep
 constexpr int kFewestProjections = 8;
@@ -341,14 +339,13 @@ bool PlaneIterative::wake_struck(State<D>& state, double h) {
     for (const int word : words) {
       const Feature feature = Feature::of(word);
       if (feature.kind != Feature::none &&
-          pairs_.place(pair, poses_, feature).gap < h * (swift_[pair.a] + swift_[pair.b]))
+          pairs_.place(pair, poses_, feature).gap <
+              h * (struck_speeds_.speed(pair.a) + struck_speeds_.speed(pair.b)))
         return true;
     }
     return false;
   };
-  swift_.clear();
-  double fastest = 0;
-  bool any = false;
+  bool any = false, begun = false;
   for (bool more = true; more;) {
     more = false, struck_.clear();
     const auto mixed = [&](const Pair& pair) {
@@ -357,25 +354,23 @@ bool PlaneIterative::wake_struck(State<D>& state, double h) {
     };
     const std::vector<Pair>& all = pairs_.all();
     if (std::none_of(all.begin(), all.end(), mixed)) break;
-    if (swift_.empty()) {
-      swift_.assign(std::size_t(n), 0);
+    if (!begun) {
+      struck_speeds_.clear(n), begun = true;
       for (int i = 0; i < n; ++i) {
         // what is quiet gets no faster, and where it may come the last search has seen
         if (!moves(i) || state.quiet[i] > 0) continue;
         const Motion& m = moving_[i];
-        swift_[i] = std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * cores_.bounding_radius[i] + h * g_;
-        fastest = std::max(fastest, swift_[i]);
+        struck_speeds_.begin(
+            i, std::sqrt(m.x * m.x + m.y * m.y) + std::fabs(m.w) * cores_.bounding_radius[i] + h * g_);
       }
     }
-    // something light may leave at twice the speed of what strikes it
     for (const Pair& pair : all) {
       if (pair.b < 0 || fixed_[pair.a] || fixed_[pair.b]) continue;
       if (state.frozen[pair.a] && state.frozen[pair.b]) continue;
-      double &a = swift_[pair.a], &b = swift_[pair.b];
-      const double slower = std::min(a, b), then = kStruck * std::min(fastest, std::max(a, b));
-      if (!(then > slower) || !meets(pair)) continue;
+      const int struck = struck_speeds_.struck(pair.a, pair.b);
+      if (struck < 0 || !meets(pair)) continue;
       if (mixed(pair)) struck_.push_back(state.frozen[pair.a] ? pair.a : pair.b);
-      (a < b ? a : b) = then, more = true;
+      struck_speeds_.strike(pair.a + pair.b - struck, struck), more = true;
     }
     if (struck_.empty()) continue;
     sleep_.wake(state, struck_), any = true;

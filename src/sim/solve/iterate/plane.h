@@ -13,6 +13,7 @@
 #include "sim/solve/iterate/plane_contact_rows.h"
 #include "sim/solve/iterate/plane_impacts.h"
 #include "sim/solve/iterate/plane_pair_cache.h"
+#include "sim/solve/iterate/struck_speeds.h"
 
 namespace obscura::sim {
 
@@ -166,7 +167,7 @@ class PlaneIterative final : public Iterative<2> {
   plane::StepConstants constants_;  // of the substep
   plane::ActiveBodies active_bodies_;
   std::vector<int> few_bodies_, few_groups_;              // of islands of few pairs
-  std::vector<double> swift_;                             // bodies: m/s, how fast they may be in the step
+  StruckSpeeds struck_speeds_;                            // in the step
   std::vector<int> struck_;                               // bodies that sleep
   bool few_stale_ = true;                                 // pairs have come or gone since
   std::vector<plane::LaneImpulses> before_, directions_;  // by group, while iterations are accelerated

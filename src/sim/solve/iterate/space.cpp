@@ -28,7 +28,6 @@ constexpr int kTouchIterations = 20000;  // touches times iterations between
 constexpr int kTempering = 5;            // rounds
 constexpr double kRoundingGain = 1e-9;   // of its kinetic energy: what an island may win by rounding
 constexpr double kNotNear = -1e300;      // 1/s: among closing rates, a touch that is not near
-constexpr double kStruckInSpace = 2;     // times as fast as what strikes it: something light
 
 }  // namespace
 
@@ -67,46 +66,40 @@ void SpaceIterative::update_sleep(StepPart<D> step) {
   while (wake_struck(state, step.h)) prepare(state, step.t, step.h), find(step);
 }
 
-// Wakes what sleeps where a body may come that is struck within the step, and would be a wall to it: what is
-// light leaves at up to twice the speed of what strikes it. True if any woke.
+// Wakes what sleeps where a body may come that is struck within the step, and would be a wall to it. True if
+// any woke.
 bool SpaceIterative::wake_struck(State<D>& state, double h) {
   if (!Sleep<D>::any(state)) return false;
   const int n = int(model_.bodies.size());
   const auto fixed = [&](int body) { return body == n || model_.bodies[std::size_t(body)].fixed; };
   const auto sleeps = [&](int body) { return state.frozen[std::size_t(body)] != 0; };
-  swift_.assign(std::size_t(n), 0);
-  double fastest = 0;
-  for (int i = 0; i < n; ++i) {
+  struck_speeds_.clear(n);
+  for (int i = 0; i < n; ++i)
     // what is quiet gets no faster by itself
-    if (fixed(i) || sleeps(i) || state.quiet[std::size_t(i)] > 0) continue;
-    swift_[std::size_t(i)] = swiftness(i);
-    fastest = std::max(fastest, swift_[std::size_t(i)]);
-  }
+    if (!fixed(i) && !sleeps(i) && !(state.quiet[std::size_t(i)] > 0)) struck_speeds_.begin(i, swiftness(i));
   struck_bodies_.clear(), reached_.clear();
-  const auto strike = [&](int by, int body) {
-    const double then = kStruckInSpace * std::min(fastest, swift_[std::size_t(by)]);
-    if (!(then > swift_[std::size_t(body)])) return false;
-    swift_[std::size_t(body)] = then;
-    struck_bodies_.push_back(body);
-    if (sleeps(body)) reached_.push_back(body);
+  const auto strike = [&](int a, int b) {
+    const int struck = struck_speeds_.struck(a, b);
+    if (struck < 0) return false;
+    struck_speeds_.strike(a + b - struck, struck);
+    struck_bodies_.push_back(struck);
+    if (sleeps(struck)) reached_.push_back(struck);
     return true;
   };
-  for (bool more = fastest > 0; more;) {
+  for (bool more = true; more;) {
     more = false;
-    for (const ContactConstraint& touch : touches_) {
-      if (fixed(touch.a) || fixed(touch.b)) continue;
-      const double a = swift_[std::size_t(touch.a)], b = swift_[std::size_t(touch.b)];
-      if (touch.gap < h * (a + b))
-        more = (a > b ? strike(touch.a, touch.b) : strike(touch.b, touch.a)) || more;
-    }
+    for (const ContactConstraint& touch : touches_)
+      if (!fixed(touch.a) && !fixed(touch.b) &&
+          touch.gap < h * (struck_speeds_.speed(touch.a) + struck_speeds_.speed(touch.b)))
+        more = strike(touch.a, touch.b) || more;
   }
   // what sleeps is no touch yet of what is still slow
   for (std::size_t k = 0; k < struck_bodies_.size(); ++k) {
     const int i = struck_bodies_[k];
     for (int j = 0; j < n; ++j) {
-      if (!sleeps(j) || fixed(j) || swift_[std::size_t(j)] > 0) continue;
+      if (!sleeps(j) || fixed(j) || struck_speeds_.speed(j) > 0) continue;
       const double near =
-          bounding_radius_[std::size_t(i)] + bounding_radius_[std::size_t(j)] + h * swift_[std::size_t(i)];
+          bounding_radius_[std::size_t(i)] + bounding_radius_[std::size_t(j)] + h * struck_speeds_.speed(i);
       if ((stances_[std::size_t(i)].x - stances_[std::size_t(j)].x).squaredNorm() < near * near) strike(i, j);
     }
   }

@@ -20,6 +20,7 @@
 #include "sim/solve/iterate/iterative.h"
 #include "sim/solve/iterate/pair_levels.h"
 #include "sim/solve/iterate/space_batches.h"
+#include "sim/solve/iterate/struck_speeds.h"
 
 namespace obscura::sim {
 
@@ -235,8 +236,8 @@ class SpaceIterative final : public Iterative<3> {
   BroadPhase<D> broad_;
   Response<D> response_;
   std::vector<Contact<D>> near_;
-  std::vector<double> swift_;                 // m/s: how fast bodies may become within the step,
-  std::vector<int> struck_bodies_, reached_;  // which are struck, and which of these sleep
+  StruckSpeeds struck_speeds_;                // in the step
+  std::vector<int> struck_bodies_, reached_;  // of these which are struck, and which of those sleep
   EnergyGuard<D> energy_guard_;
   // bodies, m: how far kinematic ones get from where their velocity takes them, and others where these
   // strike them; empty: none are kinematic
