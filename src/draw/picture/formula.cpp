@@ -1,7 +1,5 @@
 #include "draw/picture/formula.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,14 +23,6 @@ constexpr double kLimit = 0.12;    // between it and its limits, em
 constexpr double kThin = 0.17;     // a thin space, em
 constexpr double kNotHigh = 1.15;  // times as high as they are what is between brackets may be
 constexpr double kTallest = 3.5;   // how many times as high as they are brackets grow
-
-// Greek small letters are italic, as Latin ones are
-bool italic(std::string_view c) {
-  if (c.size() == 1) return formulas::latin(c[0]);
-  const std::string_view small[] = {"α", "β", "γ", "δ", "ε", "ζ", "η", "θ", "κ", "λ", "μ", "ν",
-                                    "ξ", "π", "ρ", "σ", "τ", "φ", "χ", "ψ", "ω", "ϵ", "ϕ"};
-  return std::find(std::begin(small), std::end(small), c) != std::end(small);
-}
 
 bool low(std::string_view c) {
   static constexpr std::string_view flat = "acemnorsuvwxz.,";
@@ -195,15 +185,15 @@ class Setter {
       const double room = (relation ? 0.26 : binary ? 0.2 : 0) * scale * out_.size;
       if (scale == 1) pending_ += room;
       put(c == "-" ? std::string_view("−") : c,
-          !italic(c) ? Face::math
-          : bold_    ? Face::math_bold_italic
-                     : Face::math_italic,
+          !formulas::italic(c) ? Face::math
+          : bold_              ? Face::math_bold_italic
+                               : Face::math_italic,
           scale, rise);
       if (scale == 1) pending_ += room;
       operand_ = !relation && !formulas::among(kBinary, c) && c != "(" && c != "[" && c != ",";
       return;
     }
-    const Face face = !italic(c) ? Face::math : bold_ ? Face::math_bold_italic : Face::math_italic;
+    const Face face = !formulas::italic(c) ? Face::math : bold_ ? Face::math_bold_italic : Face::math_italic;
     put(c == "-" ? std::string_view("−") : c, face, scale, rise);
   }
 
@@ -296,7 +286,7 @@ class Setter {
     const std::string& text = out_.spans.back().text;
     std::size_t last = text.size() - 1;
     while (last > 0 && (static_cast<unsigned char>(text[last]) & 0xC0) == 0x80) --last;
-    return italic(std::string_view(text).substr(last)) || (text[last] >= '0' && text[last] <= '9');
+    return formulas::italic(std::string_view(text).substr(last)) || (text[last] >= '0' && text[last] <= '9');
   }
 
   // brackets as high as what is between them
@@ -521,81 +511,6 @@ void add(const Formula& f, const Point& at, List& list, const Hold& hold) {
         break;
     }
   }
-}
-
-namespace {
-
-// whether a letter follows, or a command that stands for one
-bool begins_factor(std::string_view text) {
-  if (text.empty() || text[0] != '\\') return !text.empty() && formulas::latin(text[0]);
-  const auto end = std::find_if_not(text.begin() + 1, text.end(), formulas::latin);
-  const std::string_view word(text.begin() + 1, end);
-  const formulas::Name* name = formulas::entry(formulas::kNames, word);
-  return (name && italic(name->symbol)) || formulas::among(formulas::kAccents, word) ||
-         formulas::among(formulas::kFunctions, word) || formulas::among(formulas::kForms, word);
-}
-
-}  // namespace
-
-std::string as_vector(const std::string& text) {
-  const auto letters = std::find_if_not(text.begin(), text.end(), formulas::latin) - text.begin();
-  if (letters != 1 || text.find('*') != text.npos || text.find('$') != text.npos) return text;
-  // behind its scripts: what it is multiplied by
-  std::size_t next = 1;
-  while (next < text.size() && std::string_view("_^'").find(text[next]) != std::string_view::npos)
-    if (text[next++] != '\'') formulas::argument(text, next, false);
-  next = std::min(text.find_first_not_of(' ', next), text.size());
-  const std::string_view rest = std::string_view(text).substr(next);
-  if (begins_factor(rest)) return text;
-  std::string vector = "*";
-  vector.append(text, 0, 1).append("*").append(text, 1);
-  return vector;
-}
-
-std::string with_number(const std::string& text, int number) {
-  const auto begin = text.begin();
-  std::size_t end = 0;
-  if (!text.empty() && text[0] == '\\') {
-    end = std::size_t(std::find_if_not(begin + 1, text.end(), formulas::latin) - begin);
-    const formulas::Name* name = formulas::entry(formulas::kNames, std::string_view(text).substr(1, end - 1));
-    if (!name || !italic(name->symbol)) return text;
-  } else {
-    end = std::size_t(std::find_if_not(begin, text.end(), formulas::latin) - begin);
-    if (end != 1) return text;
-  }
-  // its scripts, the subscript with the number
-  std::string scripts;
-  bool put = false;
-  std::size_t next = end;
-  while (next < text.size() && std::string_view("_^'").find(text[next]) != std::string_view::npos) {
-    const std::size_t from = next++;
-    if (text[from] != '\'') formulas::argument(text, next, false);
-    std::string script = text.substr(from, next - from);
-    if (text[from] == '_' && !put) {
-      const std::string_view its = std::string_view(script).substr(1);
-      const bool braced = its.starts_with('{') && its.ends_with('}');
-      script = fmt::format("_{{{}{}}}", braced ? its.substr(1, its.size() - 2) : its, number), put = true;
-    }
-    scripts += script;
-  }
-  if (!put) scripts = fmt::format("_{{{}}}", number) + scripts;
-  return text.substr(0, end) + scripts + text.substr(next);
-}
-
-std::string as_words(const std::string& text) {
-  if (text.find_first_of("=_^\\$*{}<>+'\"") != text.npos) return text;
-  // words of three letters or more, or one alone
-  std::size_t longest = 0, letters = 0, words = 0;
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t n = std::min(formulas::length_of(text[i]), text.size() - i);
-    if (formulas::letter(std::string_view(text).substr(i, n)))
-      words += letters++ == 0, longest = std::max(longest, letters);
-    else
-      letters = 0;
-    i += n;
-  }
-  const bool plain = longest >= formulas::kWord || (words == 1 && longest > 1);
-  return plain ? '"' + text + '"' : text;
 }
 
 void fade(Formula& formula, double strength) {

@@ -64,6 +64,14 @@ inline constexpr int kWord = 3;
 
 inline bool latin(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
+/// Greek small letters are italic, as Latin ones are.
+inline bool italic(std::string_view c) {
+  if (c.size() == 1) return latin(c[0]);
+  constexpr std::string_view small[] = {"α", "β", "γ", "δ", "ε", "ζ", "η", "θ", "κ", "λ", "μ", "ν",
+                                        "ξ", "π", "ρ", "σ", "τ", "φ", "χ", "ψ", "ω", "ϵ", "ϕ"};
+  return among(small, c);
+}
+
 /// Bytes of the UTF-8 character that begins with `first`.
 inline std::size_t length_of(char first) {
   const auto c = static_cast<unsigned char>(first);
