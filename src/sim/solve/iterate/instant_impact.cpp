@@ -1,4 +1,5 @@
-// Few contacts that meet in one instant, exactly (sim/solve/cone/cone.h), in the plane and in space.
+// Few contacts that meet in one instant, and ends of joints, exactly (sim/solve/cone/cone.h), in the plane
+// and in space.
 
 #include "sim/solve/iterate/instant_impact.h"
 
@@ -19,10 +20,49 @@ constexpr double kImpactGain = 1e-13;  // of the energy that moves along the row
 }  // namespace
 
 template <int D>
-void InstantImpact<D>::resize(int contacts) {
-  const int rows = D * contacts;
+void InstantImpact<D>::resize(int contacts, int ends) {
+  const int rows = D * contacts + ends;
   K.resize(rows, rows), speeds.resize(rows), p.resize(rows);
-  blocks.assign(std::size_t(contacts), {}), elasticity.assign(std::size_t(contacts), 0);
+  blocks.assign(std::size_t(contacts + ends), {});
+  elasticity.assign(std::size_t(contacts), 0), strikes.assign(std::size_t(contacts), 0);
+  for (int i = contacts; i < contacts + ends; ++i) {
+    blocks[std::size_t(i)].law = Law::bounded, blocks[std::size_t(i)].lower = 0;
+  }
+}
+
+// impulses that obey the laws
+template <int D>
+bool InstantImpact<D>::find(const Matrix& response, const Rows& b, const std::vector<ConeBlock<D>>& of,
+                            Rows& impulses) {
+  impulses.setZero(b.size());
+  modes_.assign(of.size(), {});
+  cone_.sweep(response, b, of, modes_, impulses, kSweeps);
+  return cone_.solve(response, b, of, modes_, impulses).found;
+}
+
+// What holds before the impact: its impulses, into rested_, and what they leave of the speeds.
+template <int D>
+void InstantImpact<D>::rest() {
+  rested_.setZero(speeds.size());
+  resting_.clear(), rest_blocks_.clear();
+  const int contacts = int(strikes.size());
+  bool closes = false;
+  for (int k = 0, row = 0; k < int(blocks.size()); row += blocks[std::size_t(k)].rows(), ++k) {
+    if (k < contacts && strikes[std::size_t(k)] != 0) continue;
+    closes = closes || speeds[row] < 0;
+    rest_blocks_.push_back(blocks[std::size_t(k)]);
+    for (int i = 0; i < blocks[std::size_t(k)].rows(); ++i) resting_.push_back(row + i);
+  }
+  if (!closes) return;
+  const int count = int(resting_.size());
+  rest_rows_.resize(count, count), b_.resize(count);
+  for (int i = 0; i < count; ++i) {
+    b_[i] = speeds[resting_[std::size_t(i)]];
+    for (int j = 0; j < count; ++j) rest_rows_(i, j) = K(resting_[std::size_t(i)], resting_[std::size_t(j)]);
+  }
+  if (!find(rest_rows_, b_, rest_blocks_, part_)) return;
+  for (int i = 0; i < count; ++i) rested_[resting_[std::size_t(i)]] = part_[i];
+  speeds.noalias() += K * rested_;
 }
 
 // how much more energy there is after it, of the largest part that an impulse moves
@@ -37,29 +77,28 @@ double InstantImpact<D>::rise() const {
 // with e times `share`
 template <int D>
 double InstantImpact<D>::attempt(double share) {
-  const int count = int(blocks.size());
   b_ = speeds;
-  for (int k = 0; k < count; ++k)
-    if (elasticity[std::size_t(k)] != 0) b_[D * k] += share * elasticity[std::size_t(k)] * speeds[D * k];
+  for (int k = 0; k < int(strikes.size()); ++k)
+    if (strikes[std::size_t(k)] != 0) b_[D * k] += share * elasticity[std::size_t(k)] * speeds[D * k];
   if constexpr (D == 3) {
     Vec3 alone;
-    if (count == 1 && solve_one_contact(K, b_, blocks[0].mu, alone)) {
+    if (blocks.size() == 1 && solve_one_contact(K, b_, blocks[0].mu, alone)) {
       p = alone;
       return rise();
     }
   }
-  modes_.assign(std::size_t(count), {}), p.setZero();
-  cone_.sweep(K, b_, blocks, modes_, p, kSweeps);
-  if (!cone_.solve(K, b_, blocks, modes_, p).found) return std::numeric_limits<double>::infinity();
+  if (!find(K, b_, blocks, p)) return std::numeric_limits<double>::infinity();
   return rise();
 }
 
 template <int D>
 bool InstantImpact<D>::solve() {
   cone_.patience = kPatience;
+  rest();
   double gained = attempt(1);
   if (!std::isfinite(gained)) return false;
   restitution_share(1, [&](double share) { return share == 1 ? gained : gained = attempt(share); });
+  p += rested_;
   return std::isfinite(gained);
 }
 

@@ -6,36 +6,48 @@
 
 namespace obscura::sim {
 
-/// An impact of several contacts in one instant, with friction, all together:
+/// An impact of several contacts in one instant, with friction, all together, and with the ends of joints
+/// that are reached there, taut ropes and limits, which only push:
 ///   w = K p + J v,   p_n >= 0,   w_n + e v_n >= 0,   p_n (w_n + e v_n) = 0,   p_t in Coulomb's cone
-/// Newton's law can raise the energy, with friction or where something already parts; then e is less, so that
-/// it does not. Rows: of each contact its normal, then those across it.
+/// Before it what rests there holds what has pulled it since the step began: contacts that are too slow to
+/// bounce, and ends, by the same laws with e = 0; J v is what that leaves. Newton's law can raise the energy,
+/// with friction or where something already parts; then e is less, so that it does not. Rows: of each contact
+/// its normal, then those across it; then one of each end.
 template <int D>
 class InstantImpact {
  public:
-  /// The most contacts of one impact.
-  static constexpr int kMost = 8;
+  /// The most contacts of one impact, and the most ends.
+  static constexpr int kMost = 8, kMostEnds = 16;
   /// Where joints leave a push less than this of what it moves without them, it moves nothing.
   static constexpr double kLockedPush = 1e-9;
 
   // with room for the most, so that no size allocates
-  static constexpr int kMostRows = D * kMost;
+  static constexpr int kMostRows = D * kMost + kMostEnds;
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostRows, 1>;
 
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostRows, kMostRows> K;  // rows x rows, 1/kg
-  Rows speeds, p;                    // m/s before the impact; impulses, N s
-  std::vector<ConeBlock<D>> blocks;  // one a contact, with its friction
-  std::vector<double> elasticity;    // one a contact; 0: too slow to bounce
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostRows, kMostRows>;
 
-  void resize(int contacts);
+  Matrix K;                          // rows x rows, 1/kg
+  Rows speeds, p;                    // m/s before the impact; impulses, N s
+  std::vector<ConeBlock<D>> blocks;  // one a contact, with its friction, and one an end
+  std::vector<double> elasticity;    // one a contact
+  std::vector<char> strikes;         // one a contact; 0: too slow to bounce
+
+  /// Room for them; without friction and bounce.
+  void resize(int contacts, int ends = 0);
   /// Finds p. False where no impulses are found.
   bool solve();
 
  private:
+  bool find(const Matrix& response, const Rows& speeds, const std::vector<ConeBlock<D>>& of, Rows& impulses);
+  void rest();
   double rise() const;
   double attempt(double share);
 
-  Rows b_;
+  Rows b_, rested_, part_;
+  Matrix rest_rows_;
+  std::vector<int> resting_;  // rows
+  std::vector<ConeBlock<D>> rest_blocks_;
   Cone<D> cone_;
   std::vector<ConeMode<D>> modes_;
 };

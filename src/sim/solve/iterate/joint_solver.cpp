@@ -125,6 +125,12 @@ void JointSolver<D>::plan() {
   for (std::size_t body = 0; body < of.size(); ++body)
     component_of_body_[body] = of[body].empty() ? -1 : factors_.component(of[body].front());
   members_.assign(std::size_t(components()), {});
+  reached_.assign(std::size_t(components()), {}), with_ends_.assign(std::size_t(components()), {});
+  for (const int block : bounded_blocks_) {
+    const Joint<D>& joint = model_.joints[std::size_t(held_[block])];
+    if (one_sided(joint) || joint.lower > -1e299 || joint.upper < 1e299)
+      with_ends_[std::size_t(factors_.component(block))].push_back(block);
+  }
   for (const int i : bodies_) {
     if (component_of_body_[i] >= 0) members_[component_of_body_[i]].push_back(i);
   }
@@ -381,9 +387,39 @@ double JointSolver<D>::response_between(const JointResponse& p, const JointRespo
 
 // zero where joints leave it nothing to move
 template <int D>
-double JointSolver<D>::effective_mass(const Bounded& b) const {
+double JointSolver<D>::effective_mass(const JointResponse& b) const {
   const double own = response_.coupling(b.row, b.row, at_), with_joints = response_between(b, b);
   return with_joints > kLocked * own ? 1 / with_joints : 0;
+}
+
+template <int D>
+std::span<const typename JointSolver<D>::JointResponse> JointSolver<D>::reached_ends(int component) {
+  if (component < 0 || with_ends_[std::size_t(component)].empty()) return {};
+  ReachedEnds& its = reached_[std::size_t(component)];
+  if (!its.known) find_reached_ends(component);
+  return {its.ends.data(), std::size_t(its.count)};
+}
+
+template <int D>
+void JointSolver<D>::find_reached_ends(int component) {
+  ReachedEnds& its = reached_[std::size_t(component)];
+  its.known = true, its.count = 0;
+  for (const int block : with_ends_[std::size_t(component)]) {
+    const int number = held_[std::size_t(block)];
+    const Joint<D>& joint = model_.joints[std::size_t(number)];
+    for (const Load load : {lower, upper}) {
+      const bool has = one_sided(joint) ? load == upper
+                       : load == lower  ? joint.lower > -1e299
+                                        : joint.upper < 1e299;
+      if (!has) continue;
+      if (holds_[std::size_t(number)].load != load && left(number, load) > kTaut * size(number)) continue;
+      if (its.count == int(its.ends.size())) its.ends.emplace_back();
+      JointResponse& end = its.ends[std::size_t(its.count)];
+      bounded_row(block, load, end.row);
+      compute_response(end);
+      its.count += effective_mass(end) > 0;
+    }
+  }
 }
 
 // by components, and how they move each other

@@ -126,6 +126,15 @@ class JointSolver final : public System {
   /// The work of kinematic bodies by a unit of impulse along a row and by the joints' reactions to it, J.
   double given(const JointResponse& response) const;
 
+  /// The limits of a component that are reached where a substep begins or its free motion leads, and its
+  /// ropes that are taut there: of each its row, away from its end, and the reaction to it. They push bodies
+  /// at once, as joints hold them, where these are struck. Found once a substep, after keep_row_speeds().
+  std::span<const JointResponse> reached_ends(int component);
+  /// J v of a row by the velocities of body_motion(), m/s or rad/s.
+  double row_speed(const JointResponse& response) const { return speed(response.row, at_); }
+  /// The work of kinematic bodies by a unit of impulse at an end, J.
+  double given_at_end(const JointResponse& end) const { return given(end.row) + given(end); }
+
   /// After a step: projects positions onto C = 0 and velocities onto J v = 0 at the new positions.
   void finish(double h);
   /// The work of kinematic bodies through joints, and of motors, in the step that was finished last, J.
@@ -201,6 +210,7 @@ class JointSolver final : public System {
   };
 
   void plan();
+  void find_reached_ends(int component);
   JointTurn<D> turn_between(const Joint<D>& joint) const;
   // whether a joint holds anything that moves by forces
   bool moves(const Joint<D>& joint) const {
@@ -234,7 +244,7 @@ class JointSolver final : public System {
     }
   }
   void collect_bounded(double h);
-  double effective_mass(const Bounded& bounded) const;
+  double effective_mass(const JointResponse& bounded) const;
   static bool within(const Bounded& b) { return b.impulse > b.least && b.impulse < b.most; }
   void renew(Bounded& bounded);
   bool update_bounded(double h);
@@ -305,7 +315,14 @@ class JointSolver final : public System {
   std::vector<int> held_;            // joints: the blocks. A row that is loose is empty
   std::vector<char> loose_;          // one a row: of ropes, limits, motors; all but in the free motion
   std::vector<int> bounded_blocks_;  // whose last row is of a rope, a limit or a motor
-  std::vector<char> floating_;       // components: whether nothing holds them to what does not move
+  struct ReachedEnds {
+    bool known = false;  // in this substep
+    int count = 0;
+    std::vector<JointResponse> ends;  // the first `count` are in use
+  };
+  std::vector<ReachedEnds> reached_;         // of components
+  std::vector<std::vector<int>> with_ends_;  // blocks with ropes or limits, of components
+  std::vector<char> floating_;               // components: whether nothing holds them to what does not move
   bool may_break_ = false;
   std::vector<std::pair<int, int>> pairs_;  // of blocks that share a body that moves
   std::vector<int> component_of_body_;

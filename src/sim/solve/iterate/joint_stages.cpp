@@ -538,6 +538,7 @@ void JointSolver<D>::find_end_forces(const State<D>& state, double t) {
 
 template <int D>
 void JointSolver<D>::keep_row_speeds() {
+  for (ReachedEnds& ends : reached_) ends.known = false;
   holds_.assign(model_.joints.size(), {});
   for (std::size_t r = 0; r < rows_.size(); ++r) targets_[r] = speed(rows_[r], at_);
   for (const int k : bounded_blocks_) {

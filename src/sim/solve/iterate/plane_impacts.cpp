@@ -299,10 +299,9 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
       return pair.a;
     }
     if (at == queue_.size()) queue_.clear(), at = 0;
-    if (together_ && resolve_instant(impact, batches, step, joints)) {
+    if (resolve_instant(impact, batches, step, joints)) {
       for (const Meeting& meeting : meetings_) {
-        if (!meeting.impact.any()) continue;
-        had_impact(meeting.impact, step, joints);
+        if (meeting.moved) had_impact(meeting.impact, step, joints);
       }
       continue;
     }

@@ -17,7 +17,7 @@ namespace obscura::sim::plane {
 /// Coulomb friction, normals and friction of a pair together; pairs in the order of time, each at its own
 /// time and at the poses of that time, until none approaches. What meets in one instant is solved together,
 /// if it is few and the model says so (Model::impacts), else pair after pair. A body on joints is struck
-/// together with all bodies of its component.
+/// together with all bodies of its component, whose taut ropes and reached limits push back.
 class Impacts {
  public:
   /// `pairs` is kept by reference. `together`: what meets in one instant is solved together.
@@ -91,6 +91,12 @@ class Impacts {
   struct Meeting {
     Impact impact;
     Motion a, b;
+    bool moved = false;  // by the impact, directly or by ends of joints
+  };
+  // an end of a joint that is reached where something meets, and its J v there, m/s or rad/s
+  struct StruckEnd {
+    const JointSolver<2>::JointResponse* response;
+    double speed;
   };
   // what does not change while the impacts of a step are resolved
   struct Step {
@@ -127,6 +133,8 @@ class Impacts {
                 Meeting& meeting);
   bool gather_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step,
                       const JointSolver<2>& joints);
+  void take_alone(const Impact& first);
+  void gather_ends(double when, const Step& step, JointSolver<2>& joints);
   bool resolve_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step,
                        JointSolver<2>& joints);
   void had_impact(const Impact& impact, const Step& step, JointSolver<2>& joints);
@@ -183,6 +191,8 @@ class Impacts {
   std::vector<int> crowd_;                   // these
   std::vector<Meeting> meetings_;            // in one instant, the first that was found first
   std::vector<std::pair<int, int>> closed_;  // their touches: of which meeting, which of its two
+  std::vector<StruckEnd> ends_;
+  std::vector<int> struck_components_;  // of joints
   InstantImpact<2> instant_;
   std::vector<JointSolver<2>::JointResponse> instant_responses_;  // of its rows
 };

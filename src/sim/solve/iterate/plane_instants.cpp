@@ -1,5 +1,6 @@
 // Impacts of several pairs in one instant, all together (sim/solve/iterate/instant_impact.h): those of bodies
-// that hang together by closed gaps or joints. What is more than few goes pair after pair.
+// that hang together by closed gaps or joints, with the ends of joints that are reached there. What is more
+// than few goes pair after pair.
 
 #include <algorithm>
 #include <cmath>
@@ -58,10 +59,10 @@ bool Impacts::meets_at(const Pair& pair, double when, const ContactBatch& g, con
 }
 
 // What hangs together with an impact through touches that are closed then, into meetings_ and closed_. False
-// where that is one pair alone, or more than few.
+// where that is more than few.
 bool Impacts::gather_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step,
                              const JointSolver<2>& joints) {
-  meetings_.assign(1, {first, {}, {}}), closed_.clear();
+  meetings_.assign(1, {first, {}, {}, false}), closed_.clear();
   bool few = true;
   const auto list = [&](int number) {
     for (int k = 0; k < 2; ++k)
@@ -98,30 +99,65 @@ bool Impacts::gather_instant(const Impact& first, const std::vector<ContactBatch
       });
     }
   }
-  if (!few || meetings_.size() == 1) return false;
-  Pose ignored;
-  const Pair& pair = step.pairs[first.pair];
-  move(pair.a, first.when, step, ignored, meetings_[0].a);
-  move(pair.b >= 0 ? pair.b : int(now_.size()) - 1, first.when, step, ignored, meetings_[0].b);
-  return true;
+  return few;
+}
+
+// an impact alone, into meetings_ and closed_
+void Impacts::take_alone(const Impact& first) {
+  meetings_.assign(1, {first, {}, {}, false}), closed_.clear();
+  for (int k = 0; k < 2; ++k)
+    if (first.met[k]) closed_.emplace_back(0, k);
+}
+
+// The ends of joints that are reached by what meets, into ends_, and the speeds of their rows; none of more
+// than few.
+void Impacts::gather_ends(double when, const Step& step, JointSolver<2>& joints) {
+  ends_.clear(), struck_components_.clear();
+  if (joints.empty()) return;
+  for (const Meeting& meeting : meetings_) {
+    const Pair& pair = step.pairs[meeting.impact.pair];
+    for (const int body : {pair.a, pair.b}) {
+      const int component = body < 0 ? -1 : joints.component(body);
+      if (component < 0 || std::count(struck_components_.begin(), struck_components_.end(), component) != 0)
+        continue;
+      struck_components_.push_back(component);
+      const auto reached = joints.reached_ends(component);
+      if (reached.empty()) continue;
+      for (const int member : joints.members(component)) {
+        if (now_[member].im == 0) continue;
+        Pose ignored;
+        Motion v;
+        move(member, when, step, ignored, v);
+        joints.body_motion(member).v = {v.x, v.y}, joints.body_motion(member).w[0] = v.w;
+      }
+      for (const auto& end : reached) ends_.push_back({&end, joints.row_speed(end)});
+    }
+  }
+  if (int(ends_.size()) > InstantImpact<2>::kMostEnds) ends_.clear();
 }
 
 // all that meets together; false where it goes pair after pair
 bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step,
                               JointSolver<2>& joints) {
-  if (instants_ == kMostInstants) return false;
+  if (instants_ == kMostInstants || (!together_ && joints.empty())) return false;
   const Pair& its = step.pairs[first.pair];
   const auto moves = [&](int body) { return body >= 0 && now_[body].im > 0; };
-  for (const int body : {its.a, its.b})
-    if (moves(body) && crowded_[body] != 0) return false;
-  if (!gather_instant(first, batches, step, joints)) {
+  bool alone = !together_;
+  for (const int body : {its.a, its.b}) alone = alone || (moves(body) && crowded_[body] != 0);
+  if (!alone && !gather_instant(first, batches, step, joints)) {
     // so many touch there that what meets them later goes pair after pair, too
-    if (int(closed_.size()) > InstantImpact<2>::kMost)
-      for (const int body : {its.a, its.b})
-        if (moves(body)) crowded_[body] = 1, crowd_.push_back(body);
-    return false;
+    alone = true;
+    for (const int body : {its.a, its.b})
+      if (moves(body)) crowded_[body] = 1, crowd_.push_back(body);
   }
-  const int count = int(closed_.size()), rows = 2 * count, room = int(now_.size()) - 1;
+  if (alone) take_alone(first);
+  gather_ends(first.when, step, joints);
+  if (meetings_.size() == 1 && ends_.empty()) return false;
+  Pose ignored;
+  move(its.a, first.when, step, ignored, meetings_[0].a);
+  move(its.b >= 0 ? its.b : int(now_.size()) - 1, first.when, step, ignored, meetings_[0].b);
+  const int count = int(closed_.size()), rows = 2 * count, ends = int(ends_.size()),
+            room = int(now_.size()) - 1;
   const auto pair_of = [&](int k) -> const Pair& {
     return step.pairs[meetings_[closed_[k].first].impact.pair];
   };
@@ -143,7 +179,7 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     return tied_to(pair.a) || tied_to(pair.b);
   });
 
-  instant_.resize(count);
+  instant_.resize(count, ends);
   auto& K = instant_.K;
   if (tied && instant_responses_.empty()) {
     instant_responses_.resize(InstantImpact<2>::kMostRows);
@@ -159,7 +195,7 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     instant_.speeds[i] = speed(push, meeting.a, meeting.b) + (i % 2 != 0 && g.belts ? g.belt[lane] : 0);
     instant_.blocks[k].mu = pair.material.friction;
     if (i % 2 == 0 && instant_.speeds[i] < g.impact_speed[lane])
-      instant_.elasticity[k] = pair.material.elasticity;
+      instant_.strikes[k] = 1, instant_.elasticity[k] = pair.material.elasticity;
     StruckSide own[2], others[2];
     sides(i, own);
     if (tied) {
@@ -183,6 +219,16 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     // joints may leave it nothing to move
     if (i % 2 == 0 && !(K(i, i) > InstantImpact<2>::kLockedPush * (own[0].im + own[1].im))) return false;
   }
+  for (int i = 0; i < ends; ++i) {
+    const JointSolver<2>::JointResponse& end = *ends_[i].response;
+    const int row = rows + i;
+    instant_.speeds[row] = ends_[i].speed;
+    for (int j = 0; j < row; ++j) {
+      const auto& other = j < rows ? instant_responses_[j] : *ends_[j - rows].response;
+      instant_.K(row, j) = instant_.K(j, row) = joints.response_between(end, other);
+    }
+    instant_.K(row, row) = joints.response_between(end, end);
+  }
   ++instants_;
   if (!instant_.solve()) return false;
 
@@ -191,9 +237,12 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     meetings_[number].impact.n[touch] += instant_.p[2 * k];
     meetings_[number].impact.t[touch] += instant_.p[2 * k + 1];
   }
-  for (const Meeting& meeting : meetings_) {
-    if (!meeting.impact.any()) continue;
+  bool ends_push = false;
+  for (int i = 0; i < ends; ++i) ends_push = ends_push || instant_.p[rows + i] != 0;
+  for (Meeting& meeting : meetings_) {
     const Pair& pair = step.pairs[meeting.impact.pair];
+    meeting.moved = meeting.impact.any() || (ends_push && (tied_to(pair.a) || tied_to(pair.b)));
+    if (!meeting.moved) continue;
     reach(pair.a, first.when, step), reach(pair.b >= 0 ? pair.b : room, first.when, step);
     if (tied) reach_component(pair, first.when, step, joints);
   }
@@ -216,6 +265,14 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
       continue;
     }
     for (const StruckSide& p : own) give(p.body, p.x * (p.im * l), p.y * (p.im * l), p.ii * (p.turn * l));
+  }
+  for (int i = 0; i < ends; ++i) {
+    const double l = instant_.p[rows + i];
+    if (l == 0) continue;
+    drive_work_ += l * joints.given_at_end(*ends_[i].response);
+    joints.each_push(*ends_[i].response, l, [&](int body, const Vec<2>& v, const AngularVec<2>& w) {
+      give(body, v[0], v[1], w[0]);
+    });
   }
   return true;
 }

@@ -181,6 +181,7 @@ class SpaceIterative final : public Iterative<3> {
   void restore_features();
   bool has_nearest_features(const ImpactQueue::Due& due, double h);
   bool gather_impact(int touch, double t, double h);
+  void gather_ends(double t, double h);
   void begin_rows(int contacts);
   void set_rows(int k, const ContactConstraint& touch, const Vec<D>& normal, const Vec<D>& arm_a,
                 const Vec<D>& arm_b, const BodyMotion<D>& a, const BodyMotion<D>& b);
@@ -306,7 +307,14 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<Row<D>> impact_rows_;
   std::vector<RowResponse<D>> impact_responses_;
   std::vector<JointSolver<D>::JointResponse> tied_responses_;
-  bool impact_tied_ = false;  // whether joints answer the impact
+  // ends of joints that are reached where something is struck, and their J v there, m/s or rad/s
+  struct StruckEnd {
+    const JointSolver<D>::JointResponse* response;
+    double speed;
+  };
+  std::vector<StruckEnd> struck_ends_;
+  std::vector<int> struck_components_;  // of joints
+  bool impact_tied_ = false;            // whether joints answer the impact
 };
 
 }  // namespace obscura::sim

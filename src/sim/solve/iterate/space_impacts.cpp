@@ -68,13 +68,38 @@ void SpaceIterative::couple_rows(Eigen::Ref<Eigen::MatrixXd> K) const {
   }
 }
 
+// The ends of joints that are reached by what meets at a time, and the speeds of their rows; none of more
+// than few.
+void SpaceIterative::gather_ends(double t, double h) {
+  struck_ends_.clear(), struck_components_.clear();
+  if (joints_.empty()) return;
+  for (const int touch : meets_) {
+    for (const int body : {touches_[touch].a, touches_[touch].b}) {
+      const int component = body == int(model_.bodies.size()) ? -1 : joints_.component(body);
+      if (component < 0 || std::count(struck_components_.begin(), struck_components_.end(), component) != 0)
+        continue;
+      struck_components_.push_back(component);
+      const auto reached = joints_.reached_ends(component);
+      if (reached.empty()) continue;
+      for (const int member : joints_.members(component)) {
+        if (inactive_[member]) continue;
+        const BodyMotion<D>& at = flown(member, t, h).stance;
+        joints_.body_motion(member).v = at.v, joints_.body_motion(member).w = at.w;
+      }
+      for (const auto& end : reached) struck_ends_.push_back({&end, joints_.row_speed(end)});
+    }
+  }
+  if (int(struck_ends_.size()) > InstantImpact<D>::kMostEnds) struck_ends_.clear();
+}
+
 // the rows of what meets at a time, n and across it of each gap, their M^-1 J', K and J v; false where joints
 // leave it nothing to move
 bool SpaceIterative::build_impact_rows(double t, double h) {
   const int count = int(meets_.size()), rows = D * count, n = int(model_.bodies.size());
-  instant_.resize(count);
   begin_rows(count);
   impact_tied_ = false;
+  gather_ends(t, h);
+  instant_.resize(count, int(struck_ends_.size()));
   for (int k = 0; k < count; ++k) {
     const ContactConstraint& touch = touches_[meets_[k]];
     const Instant at = instant(meets_[k], t, h);
@@ -86,7 +111,8 @@ bool SpaceIterative::build_impact_rows(double t, double h) {
           row.along.dot(at.a.v - at.b.v) + row.angular_a.dot(at.a.w) - row.angular_b.dot(at.b.w);
       if (i > 0 && !touch.belt.isZero(0)) instant_.speeds[D * k + i] += row.along.dot(touch.belt);
     }
-    if (instant_.speeds[D * k] < -restitution_threshold_) instant_.elasticity[k] = touch.bounce;
+    if (instant_.speeds[D * k] < -restitution_threshold_)
+      instant_.strikes[k] = 1, instant_.elasticity[k] = touch.bounce;
     if (joints_.empty()) continue;
     for (const auto& [body, it] : {std::pair(touch.a, &at.a), std::pair(touch.b, &at.b)}) {
       if (body == n) continue;
@@ -110,13 +136,22 @@ bool SpaceIterative::build_impact_rows(double t, double h) {
     const double without = response_.inverse_mass(row.a) + response_.inverse_mass(row.b);
     if (i % D == 0 && !(K(i, i) > InstantImpact<D>::kLockedPush * without)) return false;
   }
+  for (int i = 0; i < int(struck_ends_.size()); ++i) {
+    const auto& [end, speed] = struck_ends_[i];
+    const int row = rows + i;
+    instant_.speeds[row] = speed;
+    for (int j = 0; j <= row; ++j) {
+      const auto& other = j < rows ? tied_responses_[j] : *struck_ends_[j - rows].response;
+      K(row, j) = K(j, row) = joints_.response_between(*end, other);
+    }
+  }
   return true;
 }
 
 // all that meets at a time, at once; false where no impulses were found
 bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work) {
   if (!build_impact_rows(t, h)) return false;
-  const int rows = int(instant_.speeds.size());
+  const int rows = int(impact_rows_.size());
   if (!instant_.solve()) return false;
   const auto& impulses = instant_.p;
 
@@ -157,6 +192,16 @@ bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work)
                     BodyMotion<D>& it = flown_[body].stance;
                     it.v += dv, it.w += p * spin;
                   });
+  }
+  for (int i = 0; i < int(struck_ends_.size()); ++i) {
+    const double impulse = impulses[rows + i];
+    if (impulse == 0) continue;
+    if (!carries_.empty() && !work.empty())
+      work[0] += impulse * joints_.given_at_end(*struck_ends_[i].response);
+    joints_.each_push(*struck_ends_[i].response, impulse,
+                      [&](int body, const Vec<D>& dv, const AngularVec<D>& dw) {
+                        flown_[body].stance.v += dv, flown_[body].stance.w += dw;
+                      });
   }
   return true;
 }
