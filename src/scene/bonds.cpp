@@ -53,6 +53,7 @@ std::vector<NameRange> bonds(const Node& top, const NameTable& roster, sim::Worl
     const double within = fields.number("within");
     sim::Bond<D> bond;
     if (const Node* breaks = fields.given("breaks")) bond.strength = breaks->number();
+    bond.impact_duration = fields.number("impact_duration");
     const std::size_t wrong = complaints.count();
     const std::vector<int> bodies = meant(*of, roster, complaints);
     if (complaints.count() != wrong) continue;

@@ -346,6 +346,8 @@ std::vector<Key> world_rows() {
        .doc = "The largest distance of such a pair.", .example = "0.01"},
       {.path = "bond.breaks", .form = number, .unit = "N", .absent = "never", .range = kPositive,
        .doc = "The force that breaks the bond of one pair; a torque counts as a force with half the distance of the two bodies as lever arm.", .example = "200"},
+      {.path = "bond.impact_duration", .form = number, .unit = "s", .fallback = "0.001", .range = kPositive,
+       .doc = "How long an impact lasts for the bond: an impulse on it (N s) counts as a force of that over this.", .example = "0.01"},
 
       {.path = "explosion", .form = tables,
        .doc = "A force away from a centre on each point of each body (a particle, its ends, its corners): F = S r / (r^2 + s^2)^(3/2)."},

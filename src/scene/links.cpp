@@ -246,6 +246,10 @@ void nets(const Node& top, const NameTable& roster, sim::World<D>& world, Diagno
       world.model.springs.push_back(spring);
     };
     const bool diagonals = fields.flag("diagonals");
+    if (diagonals && (columns < 2 || rows < 2))
+      complaints.add(
+          fields.place("diagonals"),
+          fmt::format("'diagonals' does nothing: '{}' is one row, and a grid has them", group->name));
     for (int row = 0; row < rows; ++row) {
       for (int column = 0; column < columns; ++column) {
         const int i = row * columns + column;

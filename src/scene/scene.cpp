@@ -21,6 +21,7 @@
 #include "scene/figure.h"
 #include "scene/forces.h"
 #include "scene/input.h"
+#include "scene/idle_keys.h"
 #include "scene/joints.h"
 #include "scene/links.h"
 #include "scene/overlap.h"
@@ -327,6 +328,7 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
   const std::vector<CopySet> copy_sets = apply(sets, top, complaints);
   const Dimension told = dimension(top);
   check(top, told, complaints);
+  if (complaints.none()) refuse_idle_keys(top, complaints);
 
   Scene scene;
   MarksPut put = put_marks(top, marks, complaints);

@@ -56,6 +56,51 @@ TEST(Diagnostics, TablesNobodyKnowsAreToldWhichThereAre) {
       "[[attractor]], [[when]], [[mouse]]");
 }
 
+TEST(Diagnostics, KeysThatCanDoNothingAreTold) {
+  const std::string ball = "[[ball]]\n", none = "[room]\nwalls = \"none\"\n";
+  const auto all_told = [](const std::string& text, const std::string& told) {
+    const auto lines = wrong(text);
+    EXPECT_EQ(lines.size(), 1u) << text;
+    if (!lines.empty()) {
+      EXPECT_THAT(lines[0], HasSubstr(told)) << text;
+    }
+  };
+  all_told(ball + "[room]\nwind = [1, 0]", "'wind' does nothing");
+  EXPECT_TRUE(wrong(ball + "[room]\nwind = [1, 0]\ndrag = 0").empty()) << "given, and none is meant";
+  EXPECT_TRUE(wrong(ball + "drag = 1\n[room]\nwind = [1, 0]").empty());
+  EXPECT_TRUE(wrong(ball + "[room]\nwind = [0, 0]").empty());
+  all_told(ball + "[room]\nsoftening = 1", "'softening' does nothing");
+  for (const std::string key : {"electric = [1, 0]", "magnetic = 1", "coulomb = 1"}) {
+    all_told(ball + "[room]\n" + key, "no body has a 'charge'");
+    EXPECT_TRUE(wrong(ball + "charge = 0\n[room]\n" + key).empty());
+    EXPECT_TRUE(wrong(ball + "name = \"a\"\n[room]\n" + key +
+                      "\n[[when]]\ntime = 1\ndo = [{ set = \"a.charge\", to = 1 }]")
+                    .empty());
+  }
+  all_told(none + "ground_drag = 1\n" + ball, "'ground_drag' does nothing");
+  all_told(none + ball + "ground_drag = 1", "'ground_drag' does nothing");
+  all_told("[[box]]\ninertia = 1\nrotation = false", "'inertia' does nothing");
+  all_told("[[box]]\ninertia = 1\n[physics]\nrotation = false", "'inertia' does nothing");
+  for (const std::string key : {"velocity = [1, 0]", "spin = 5"}) {
+    all_told("[[box]]\nfixed = true\n" + key, "stands still");
+    EXPECT_TRUE(wrong("[[box]]\nname = \"a\"\n" + key, {"a.fixed=true"}).empty());
+  }
+  all_told("duration = 1\n[[box]]\nfixed = true\nrelease = 2", "a release at 2 s never comes");
+  all_told("duration = 1\n[[box]]\n[[explosion]]\nstrength = 1\nstart = 2",
+           "an explosion at 2 s never comes");
+  const std::string event = "[[box]]\n[[when]]\ntime = 2\ndo = [{ mark = \"k\" }]\n";
+  all_told("duration = 1\n" + event, "an event at 2 s never comes: the scene ends at 1 s");
+  EXPECT_TRUE(wrong("duration = 2\n" + event).empty());
+  EXPECT_TRUE(wrong("duration = 3\n" + event, {"duration=1"}).empty()) << "a shorter run";
+  all_told(event + "again = true", "a time comes once");
+  all_told("[[box]]\n[[explosion]]\nstrength = 1\ninterval = 0.1", "scheme = \"paper\"");
+  all_told(
+      "[[particle]]\nname = \"a\"\nposition = [1, 1]\ncopies = { count = 3, offset = [0.1, 0] }\n[[net]]\nof "
+      "= "
+      "\"a\"\ndiagonals = true",
+      "one row");
+}
+
 TEST(Diagnostics, AKeyInTheWrongTableIsSentHome) {
   refused("gravity = [0, -1]", "a.toml:1:1: unknown key 'gravity'; it belongs in [room]");
   refused("[room]\nfps = 30", "a.toml:2:1: unknown key 'fps' in [room]; it belongs in [film]");

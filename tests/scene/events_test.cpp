@@ -925,6 +925,35 @@ TEST(Events, OfTheLastPartOfAStepAreListed) {
   EXPECT_NEAR(sim::value(all[0].time), 0.63, 1e-12);
 }
 
+// An impact on bonded bodies counts as a force of its impulse over the bond's impact_duration. A cube that a
+// bond holds on another is stopped with it from v = 3 m/s: m v / T.
+TEST(Events, ABondBreaksByAnImpactOfItsDuration) {
+  const double m = 2, v = 3;
+  for (const int dimension : {2, 3}) {
+    const std::string deep = dimension == 2 ? "" : ", 0.2", z = dimension == 2 ? "" : ", 0";
+    for (const double lasts : {0.001, 0.02}) {
+      for (const double share : {0.999, 1.001}) {
+        std::string text =
+            fmt::format("duration = 0.2\n[room]\nwalls = \"ground\"\nsize = [4, 4{}]\ngravity = [0, 0{}]\n",
+                        dimension == 2 ? "" : ", 4", z);
+        for (int i = 0; i < 2; ++i)
+          text += fmt::format(
+              "[[box]]\nname = \"b{}\"\nsize = [0.2, 0.2{}]\nmass = {}\nposition = [1, {}{}]\n"
+              "velocity = [0, -{}{}]\nelasticity = 0\n",
+              i, deep, m, 0.4 + 0.2 * i, z, v, z);
+        text += fmt::format(
+            "[[bond]]\nname = \"glue\"\nof = [\"b0\", \"b1\"]\nbreaks = {}\n{}[[when]]\nbreaks = "
+            "\"glue\"\ndo = "
+            "[{{ mark = \"broke\" }}]\n",
+            share * m * v / lasts, lasts == 0.001 ? "" : fmt::format("impact_duration = {}\n", lasts));
+        const TextRun run(text);
+        run.at(0.2);
+        EXPECT_EQ(run.run->events().size(), share < 1 ? 1u : 0u) << dimension << " " << lasts << " " << share;
+      }
+    }
+  }
+}
+
 // `event` promises exact times, and bonded bodies are known at the ends of steps.
 TEST(Events, OfBondsAreRefusedWhereTimesAreExact) {
   const std::string pieces =

@@ -5,7 +5,8 @@
 // A bond k of a and b at p gives a (f, (p - x_a) x f + tau) and b the opposite. With z = (f, tau / l),
 //   G z = (f_i, n_i),   z = G' (G G')^-1 (f_i, n_i)           the solution of least norm
 // without one part of a free body, whose equation follows from the others. For an impact the same with
-// impulses and without w; an impulse counts as a force through the bond's impact time.
+// impulses and without w; an impulse counts as a force of that over the
+// duration that the bond has for impacts.
 // Couples that joints transmit, as a weld does, are what the change of the body's spin in the step tells:
 //   C = I (dw / h - alpha)                                    shared out evenly where there are several
 
@@ -212,7 +213,7 @@ typename BondLoads<D>::Required BondLoads<D>::required(const State<D>& state, co
   const AngularVec<D>& w = it.at.w;
   const int rows = it.rows();
   double shortest = 1e300;
-  for (const int k : it.bonds) shortest = std::min(shortest, model_.bonds[k].blow);
+  for (const int k : it.bonds) shortest = std::min(shortest, model_.bonds[k].impact_duration);
   Required want;
   want.loads = Eigen::MatrixXd::Zero(rows * parts.count, 2);
   for (const int i : it.parts) {
@@ -313,7 +314,7 @@ bool BondLoads<D>::break_overloaded(State<D>& state, const Composite& it, const 
     const int k = it.bonds[b];
     const Bond<D>& bond = model_.bonds[k];
     Eigen::VectorXd all(rows);
-    for (int r = 0; r < rows; ++r) all[r] = load(rows * b + r, 0) + load(rows * b + r, 1) / bond.blow;
+    for (int r = 0; r < rows; ++r) all[r] = load(rows * b + r, 0) + load(rows * b + r, 1) / bond.impact_duration;
     loads_[k] = std::sqrt(all.squaredNorm());
     if (loads_[k] > bond.strength) state.intact[k] = 0, any = true;
   }

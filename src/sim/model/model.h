@@ -213,7 +213,7 @@ template <int D>
 struct Bond {
   int a = -1, b = -1;       // bodies; b = -1: the room
   double strength = 1e300;  // N
-  double blow = 0.001;      // s: how long an impact is taken to last
+  double impact_duration = 0.001;  // s: an impulse counts as a force of that over this
 };
 
 /// The hand of the scripted mouse: pressed at the first knot, released at the last.
