@@ -8,6 +8,7 @@
 
 #include "scene/error.h"
 #include "scene/scene.h"
+#include "scene/text_run.h"
 #include "sim/model/body_motion.h"
 #include "sim/multibody/chain.h"
 #include "sim/solve/contact_solver.h"
@@ -270,6 +271,37 @@ copies = { count = [10, 6], offset = [[0.3, 0], [0.02, 0.25]], jitter = 0.02 }
     EXPECT_GT(lies.x[limb].y(), 0.05) << limb;
     EXPECT_LT(lies.x[limb].y(), 2.0) << limb;
     EXPECT_LT(lies.v[limb].norm(), 0.05) << limb;
+  }
+}
+
+// Velocities that joints do not allow are corrected at once, those of chains too, by the joints that close
+// their loops and by those to bodies that are moved: at the start they are what they are without a chain.
+TEST(Chains, BeginAsAllJointsAllow) {
+  const std::string bars =
+      "duration = 1\n[room]\nwalls = \"none\"\n[[box]]\nname = \"a\"\nsize = [1, 0.1]\nposition = [0, 0]\n"
+      "[[box]]\nname = \"b\"\nsize = [1, 0.1]\nposition = [1, 0]\n"
+      "[[joint]]\ntype = \"pin\"\nbetween = [\"a\", \"b\"]\nat = [0.5, 0]\n";
+  const std::string loop =
+      bars +
+      "[[box]]\nname = \"d\"\nsize = [1, 0.1]\nposition = [0.5, 0.5]\nspin = 90\n"
+      "[[joint]]\ntype = \"pin\"\nbetween = [\"a\", \"d\"]\nat = [0, 0.25]\n"
+      "[[joint]]\ntype = \"rod\"\nbetween = [\"b\", { body = \"d\", local = [0.5, 0] }]\n";
+  const std::string trolley =
+      bars +
+      "[[box]]\nname = \"t\"\nsize = [0.4, 0.2]\nposition = [-0.5, 0]\nmotion = { y = \"2*t\" }\n"
+      "[[joint]]\ntype = \"pin\"\nbetween = [\"a\", \"t\"]\nat = [-0.5, 0]\n";
+  const std::pair<std::string, std::string> cases[] = {{loop, "[[chain]]\nof = [\"a\", \"b\", \"d\"]\n"},
+                                                       {trolley, "[[chain]]\nof = [\"a\", \"b\"]\n"}};
+  for (const auto& [bodies, chain] : cases) {
+    const TextRun with(bodies + chain), without(bodies);
+    for (const double t : {0.0, 0.3}) {
+      const sim::Snapshot one = with.at(t), other = without.at(t);
+      for (std::size_t i = 0; i < one.bodies.size(); ++i) {
+        const double near = t == 0 ? 1e-14 : 1e-9;
+        EXPECT_LT((one.bodies[i].velocity - other.bodies[i].velocity).norm(), near) << t << " " << i;
+        EXPECT_LT((one.bodies[i].spin - other.bodies[i].spin).norm(), 10 * near) << t << " " << i;
+      }
+    }
   }
 }
 

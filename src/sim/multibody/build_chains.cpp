@@ -67,6 +67,32 @@ void put_pose(const State<D>& state, int body, std::vector<double>& q) {
   q.insert(q.end(), state.x[body].data(), state.x[body].data() + D);
 }
 
+// projects the bodies' velocities onto those that the joints of a chain allow
+template <int D>
+void carry_over(const Model<D>& model, const State<D>& state, const Articulation<D>& its,
+                ChainState& posture) {
+  const Chain<D>& chain = *its.tree;
+  ChainKinematics<D> stance(chain);
+  ChainDynamics<D> dynamics(chain);
+  place<D>(chain, posture.q, stance);
+  factor(chain, stance, dynamics);
+  std::vector<Wrench<D>> momenta(its.bodies.size());
+  std::vector<double> along(posture.v.size());
+  for (int i = chain.size() - 1; i >= 0; --i) {
+    const int body = its.bodies[i], k = turning(state, body);
+    const Rotation<D> axes = rotation<D>(state.turn[k]);
+    const Body<D>& it = model.bodies[body];
+    const Wrench<D> own{to_room<D>(axes, it.inertia.cwiseProduct(from_room<D>(axes, state.spin[k]))),
+                        it.mass * state.v[body]};
+    momenta[i] += transformed_to_origin(own, stance.com[i]);
+    for (int j = chain.v_start(i); j < chain.v_start(i + 1); ++j)
+      along[j] = power(momenta[i], stance.freedom[j]);
+    if (const int up = chain[i].parent; up >= 0)
+      momenta[up] += transformed_to_origin(momenta[i], stance.arm[i]);
+  }
+  respond<D>(chain, stance, along, dynamics, posture.v);
+}
+
 template <int D>
 class Growing {
  public:
@@ -123,7 +149,7 @@ class Growing {
         if (joint < 0) made.offsets[i] -= posture.q[0];
       }
     }
-    carry_over(*made.tree, posture);
+    carry_over(world_.model, world_.state, made, posture);
   }
 
   bool holds(int joint) const {
@@ -154,29 +180,6 @@ class Growing {
     }
     free_[body] = 0;
     links_.push_back(link), members_.push_back(body), held_.push_back(joint);
-  }
-
-  // projects the bodies' velocities onto those that the joints allow
-  void carry_over(const Chain<D>& chain, ChainState& posture) {
-    ChainKinematics<D> stance(chain);
-    ChainDynamics<D> dynamics(chain);
-    place<D>(chain, posture.q, stance);
-    factor(chain, stance, dynamics);
-    std::vector<Wrench<D>> momenta(members_.size());
-    std::vector<double> along(posture.v.size());
-    for (int i = chain.size() - 1; i >= 0; --i) {
-      const int body = members_[i], k = turning(world_.state, body);
-      const Rotation<D> axes = turned(body);
-      const Body<D>& it = world_.model.bodies[body];
-      const Wrench<D> own{to_room<D>(axes, it.inertia.cwiseProduct(from_room<D>(axes, world_.state.spin[k]))),
-                          it.mass * world_.state.v[body]};
-      momenta[i] += transformed_to_origin(own, stance.com[i]);
-      for (int j = chain.v_start(i); j < chain.v_start(i + 1); ++j)
-        along[j] = power(momenta[i], stance.freedom[j]);
-      if (const int up = chain[i].parent; up >= 0)
-        momenta[up] += transformed_to_origin(momenta[i], stance.arm[i]);
-    }
-    respond<D>(chain, stance, along, dynamics, posture.v);
   }
 
   World<D>& world_;
@@ -213,11 +216,20 @@ void articulate(World<D>& world, const std::vector<int>& bodies) {
   Growing<D>(world, bodies).grow();
 }
 
+template <int D>
+void take_velocities(const Model<D>& model, State<D>& state) {
+  for (std::size_t k = 0; k < model.chains.size(); ++k)
+    carry_over(model, state, model.chains[k], state.chain_states[k]);
+  follow(model, state);
+}
+
 template Link<2> link_of<2>(const Body<2>&);
 template Link<3> link_of<3>(const Body<3>&);
 template void articulate<2>(World<2>&, std::vector<Link<2>>, std::vector<int>);
 template void articulate<3>(World<3>&, std::vector<Link<3>>, std::vector<int>);
 template void articulate<2>(World<2>&, const std::vector<int>&);
 template void articulate<3>(World<3>&, const std::vector<int>&);
+template void take_velocities<2>(const Model<2>&, State<2>&);
+template void take_velocities<3>(const Model<3>&, State<3>&);
 
 }  // namespace obscura::sim

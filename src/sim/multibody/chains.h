@@ -29,6 +29,11 @@ void articulate(World<D>& world, const std::vector<int>& bodies);
 template <int D>
 void follow(const Model<D>& model, State<D>& state);
 
+/// Sets the joint velocities of the chains to those that their bodies have in `state`, projected onto what the
+/// joints allow; and those of the bodies after them.
+template <int D>
+void take_velocities(const Model<D>& model, State<D>& state);
+
 /// All chains of a model as one system in the displacements and velocities of their joints, with their
 /// kinematics at an instant. Links are numbered as in links().
 template <int D>

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/collide/near_pair.h"
+#include "sim/multibody/chains.h"
 #include "sim/solve/iterate/joint_solver.h"
 
 namespace obscura::sim {
@@ -68,16 +69,23 @@ void ContactStep<D>::find_apart(State<D>& state) {
   }
 }
 
-// links of chains have such velocities by themselves; beads come onto their wires in the first step
+// Velocities that all joints allow, those of chains with those that close their loops; beads come onto their
+// wires in the first step.
 template <int D>
 void ContactStep<D>::begin(State<D>& state) const {
-  const bool linked = std::any_of(model_.joints.begin(), model_.joints.end(),
-                                  [](const Joint<D>& joint) { return joint.linked; });
-  if (model_.joints.empty() || linked || state.step != 0) return;
+  if (model_.joints.empty() || state.step != 0) return;
   const std::vector<char> broken = state.broken;
   for (std::size_t i = 0; i < model_.joints.size(); ++i)
     if (model_.joints[i].kind == JointKind::wire) state.broken[i] = 1;
-  JointSolver<D>(model_).project_initial_velocities(state);
+  if (model_.chains.empty()) {
+    JointSolver<D>(model_).project_initial_velocities(state);
+  } else {
+    Model<D> jointed = model_;
+    jointed.chains.clear();
+    for (Body<D>& body : jointed.bodies) body.linked = false;
+    for (Joint<D>& joint : jointed.joints) joint.linked = false;
+    if (JointSolver<D>(jointed).project_initial_velocities(state)) take_velocities(model_, state);
+  }
   state.broken = broken;
 }
 

@@ -474,8 +474,8 @@ void JointSolver<D>::shift_bounded(Bounded& bounded, double by) {
 }
 
 template <int D>
-void JointSolver<D>::project_initial_velocities(State<D>& state) {
-  if (bodies_.empty()) return;
+bool JointSolver<D>::project_initial_velocities(State<D>& state) {
+  if (bodies_.empty()) return false;
   gather(state);
   for (const int i : bodies_) {
     at_[i] = sim::body_motion(state, i);
@@ -484,13 +484,14 @@ void JointSolver<D>::project_initial_velocities(State<D>& state) {
   compute_rows();
   double fastest = 0;
   for (const Row<D>& row : rows_) fastest = std::max(fastest, std::fabs(speed(row, at_)));
-  if (fastest <= kApart * model_.scale) return;
+  if (fastest <= kApart * model_.scale) return false;
   for (int round = 0; round < 2; ++round) solve_positions();  // the second for the rounding of the first
   for (const int i : bodies_) {
     if (!response_.moves(i)) continue;
     state.v[i] = at_[i].v;
     if (const int k = turning(state, i); k >= 0) state.spin[k] = at_[i].w;
   }
+  return true;
 }
 
 template <int D>

@@ -48,8 +48,8 @@ class JointSolver final : public System {
   void gather(const State<D>& state);
 
   /// Before the first step: projects the velocities onto J v = 0 by impulses of the joints. Needed because
-  /// half the displacement of a step comes from the velocities at its start.
-  void project_initial_velocities(State<D>& state);
+  /// half the displacement of a step comes from the velocities at its start. False: they are as they were.
+  bool project_initial_velocities(State<D>& state);
 
   /// Steps the bodies that `dynamics` has gathered from t to t + h, with the joints' forces in each stage of
   /// the integrator, and those of their limits, motors and friction. Returns the work of kinematic bodies and
