@@ -4,7 +4,10 @@
 //   u = v - V - W x (x - c),   V = P / M,   W = J^-1 L    P, L, J  momentum, angular momentum and inertia
 // such that its energy is that before the step,
 //   K_u s^2 = K_u - dE
-// If that is not enough, bodies that rose in the step are lowered by a part of their way.
+// One that touches something fixed keeps what it had, and of what the step changed, D = v - v_old, a part
+//   v' = v + u D,   A u^2 + (m v . D) u = -dE,   A = m D^2 / 2      the root nearest to 0
+// so that what slides or rolls in it without a brake goes on as alone. If that is not enough, bodies that
+// rose in the step are lowered by a part of their way.
 
 #include "sim/energy/energy_guard.h"
 
@@ -20,6 +23,7 @@ namespace {
 
 constexpr double kFlight = 1e-9;           // of its motion: more no body gains alone
 constexpr double kJointed = 1e-3;          // the same on joints, by the error of a step
+constexpr double kMostOfChange = 0.1;      // of what a step changes, at most so much is taken back or added
 constexpr double kEnergyRounding = 1e-13;  // of all that is in motion or may fall
 
 template <int D>
@@ -89,7 +93,8 @@ void EnergyGuard<D>::open(const State<D>& state, double t) {
   t_ = t;
   if (forces_.potentials()) forces_.gather(state);
   const int n = int(weights_.size());
-  x_ = state.x, broken_ = state.broken, before_.resize(n), now_.resize(n), booked_.assign(n, 0);
+  x_ = state.x, v_ = state.v, spin_ = state.spin, broken_ = state.broken, before_.resize(n), now_.resize(n),
+  booked_.assign(n, 0);
   for (int i = 0; i < n; ++i) {
     before_[i] = kinetic(state, i) - weights_[i].mass * model_.gravity.dot(state.x[i]);
   }
@@ -142,12 +147,14 @@ template <int D>
 void EnergyGuard<D>::gather(const State<D>& state) {
   const int n = int(weights_.size());
   const auto counts = [&](int body) { return body >= 0 && weights_[body].mass > 0; };
-  tied_.assign(n, 0), jointed_.assign(n, 0);
+  tied_.assign(n, 0), jointed_.assign(n, 0), held_.assign(n, 0);
   const bool exact = model_.integrator == Integrator::rk4;  // others may win by their law
   groups_.reset(n), bound_.assign(n, {}), sums_.assign(n, {});
   const auto link = [&](int a, int b, bool fast) {
     for (const int body : {a, b}) {
-      if (counts(body)) (exact && fast ? jointed_ : tied_)[body] = 1;
+      if (!counts(body)) continue;
+      (exact && fast ? jointed_ : tied_)[body] = 1;
+      held_[body] |= char(fast);
     }
     if (a >= 0 && b >= 0) {
       carried_[a] |= char(model_.bodies[std::size_t(b)].driven);
@@ -197,7 +204,7 @@ void EnergyGuard<D>::gather(const State<D>& state) {
     group.lift -= m * model_.gravity.dot(state.x[i] - x_[i]), group.mass += m;
     group.held = group.held || bound_[i].held;
     it.touched = it.touched || touched_[i], it.driven = it.driven || blasting || driven_[i] || carried_[i];
-    it.tied = it.tied || tied_[i], it.jointed = it.jointed || jointed_[i];
+    it.tied = it.tied || tied_[i], it.jointed = it.jointed || jointed_[i], it.held = it.held || held_[i];
     it.rooted = it.rooted || rooted_[i] || (frozen && state.frozen[i]);
   }
   for (int i = 0; i < n; ++i) {
@@ -273,14 +280,40 @@ void EnergyGuard<D>::move_as_one(const State<D>& state) {
   }
 }
 
+// for islands that something holds, but no joint: how much more of the changes of this step leaves the energy
+// that they had
+template <int D>
+void EnergyGuard<D>::share_changes(const State<D>& state) {
+  for (int i = 0; i < int(weights_.size()); ++i) {
+    Island& it = sums_[islands_.root(i)];
+    if (weights_[i].mass == 0 || !it.touched || !it.rooted) continue;
+    const double m = weights_[i].mass;
+    const Vec<D> change = state.v[i] - v_[i];
+    it.changes += 0.5 * m * change.squaredNorm(), it.rate += m * state.v[i].dot(change);
+    const int k = turning(state, i);
+    if (k < 0 || !model_.bodies[i].turns()) continue;
+    const AngularVec<D> turned = state.spin[k] - spin_[k];
+    const AngularVec<D> momentum = inertia_times<D>(weights_[i].inertia, axes<D>(state, k), turned);
+    it.changes += 0.5 * turned.dot(momentum), it.rate += state.spin[k].dot(momentum);
+  }
+  for (Island& it : sums_) {
+    if (!it.touched || !it.rooted || it.held || it.chained || it.driven) continue;
+    const double gain = it.gain - it.granted, inside = it.rate * it.rate - 4 * it.changes * gain;
+    if (!(gain > 0) || !(inside >= 0)) continue;
+    const double root = std::sqrt(inside), more = -2 * gain / (it.rate + (it.rate < 0 ? -root : root));
+    if (std::abs(more) <= kMostOfChange) it.more = more;
+  }
+}
+
 template <int D>
 double EnergyGuard<D>::take_back(State<D>& state, bool lower) {
   gather(state);
   move_as_one(state);
+  share_changes(state);
   double left = 0;
   for (Island& it : sums_) {
     it.gain -= it.granted;
-    if (!it.touched || it.driven || (it.chained && !it.rooted) || !(it.gain > 0)) continue;
+    if (!it.touched || it.driven || (it.chained && !it.rooted) || !(it.gain > 0) || it.more != 0) continue;
     const double has = std::max(it.kinetic, 0.0);
     it.keeps = has > it.gain ? std::sqrt(1 - it.gain / has) : 0;
     if (!it.rooted || it.gain <= has) continue;
@@ -293,7 +326,12 @@ double EnergyGuard<D>::take_back(State<D>& state, bool lower) {
   const double g2 = model_.gravity.squaredNorm();
   for (int i = 0; i < int(weights_.size()); ++i) {
     const Island& it = sums_[islands_.root(i)];
-    if (weights_[i].mass == 0 || it.keeps == 1) continue;
+    if (weights_[i].mass == 0) continue;
+    if (it.more != 0) {
+      state.v[i] += it.more * (state.v[i] - v_[i]);
+      if (const int k = turning(state, i); k >= 0) state.spin[k] += it.more * (state.spin[k] - spin_[k]);
+    }
+    if (it.keeps == 1) continue;
     Vec<D> common = Vec<D>::Zero();
     AngularVec<D> spin = AngularVec<D>::Zero();
     if (!it.rooted) {

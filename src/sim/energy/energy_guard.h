@@ -35,11 +35,13 @@ class EnergyGuard {
   }
   /// If it has risen: allows the island of `body` to gain share * m g * (height of the room).
   void excuse(int body, double share) { granted_[body] = share; }
-  /// Removes from each island of touching bodies the energy that it gained, by scaling its velocities; for an
-  /// island that touches nothing fixed, its velocities relative to each other, so that momentum and angular
-  /// momentum stay. If the motion has too little energy and `lower` is true, bodies that rose are lowered; in
-  /// a crowd they would be lowered into each other. Islands on which hands, motors or explosions do work are
-  /// left alone. `state` is that of risen(). Returns the energy (J) that remains: that of risen height.
+  /// Removes from each island of touching bodies the energy that it gained: where it touches something fixed,
+  /// by scaling what the step has changed of its velocities, so that what no contact brakes goes on; where
+  /// that is not enough, and where joints hold it, by scaling its velocities; where it touches nothing fixed,
+  /// its velocities relative to each other, so that momentum and angular momentum stay. If the motion has too
+  /// little energy and `lower` is true, bodies that rose are lowered; in a crowd they would be lowered into
+  /// each other. Islands on which hands, motors or explosions do work are left alone. `state` is that of
+  /// risen(). Returns the energy (J) that remains: that of risen height.
   double take_back(State<D>& state, bool lower);
 
  private:
@@ -55,6 +57,10 @@ class EnergyGuard {
     Vec<D> momentum = Vec<D>::Zero(), middle = Vec<D>::Zero();  // kg m/s; kg m
     bool touched = false, rooted = false, chained = false, driven = false;
     bool tied = false, jointed = false;  // by springs; by joints
+    bool held = false;                   // by any joint
+    // of the changes of velocity: their energy, and its rate along them, J
+    double changes = 0, rate = 0;
+    double more = 0;  // of the changes: so much of them is added
     // as it moves as one: about its middle
     AngularVec<D> turning = AngularVec<D>::Zero();  // angular momentum, then spin
     Eigen::Matrix<double, kAngular<D>, kAngular<D>> inertia =
@@ -72,6 +78,7 @@ class EnergyGuard {
   void add_fields(const State<D>& state, std::vector<double>& to);
   void gather(const State<D>& state);
   void move_as_one(const State<D>& state);
+  void share_changes(const State<D>& state);
 
   const Model<D>& model_;
   const double g_;  // m/s^2
@@ -80,14 +87,15 @@ class EnergyGuard {
   std::vector<BodyMotion<D>> motions_;
   double t_ = 0;
   std::vector<Weight> weights_;
-  double size_ = 0;  // J: m g times the room's height
-  std::vector<Vec<D>> x_;
+  double size_ = 0;            // J: m g times the room's height
+  std::vector<Vec<D>> x_, v_;  // at open()
+  std::vector<AngularVec<D>> spin_;
   std::vector<char> broken_;                          // joints, at open()
   std::vector<double> before_, now_, booked_;         // one a body, J
   std::vector<int> sprung_;                           // joints with a spring
   std::vector<double> springs_before_, springs_now_;  // J: of springs, then of those
   Islands islands_, groups_;
-  std::vector<char> touched_, rooted_, tied_, jointed_;
+  std::vector<char> touched_, rooted_, tied_, jointed_, held_;
   std::vector<char> carried_;    // one a body: something that is moved, or a belt, works on it
   std::vector<double> granted_;  // one a body
   std::vector<Island> sums_;     // at the lowest of their bodies

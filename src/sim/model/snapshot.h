@@ -65,6 +65,7 @@ struct SceneInfo {
     double offset_a = 0, offset_b = 0;
     std::vector<double> around = {};  // of a pulley with friction: those of what its rope slides over
     int rounds = 0;                   // its: whole turns more around each
+    bool later = false;               // not there at the start
     bool belt = false;                // of a gear: it is one, around wheels of these radii
     int rope = 0;                     // of a pulley: pieces of one rope have the same number
     Vec3 tooth_a = Vec3::UnitX(), tooth_b = Vec3::UnitX();  // of a gear, in the bodies' frames

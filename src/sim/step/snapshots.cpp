@@ -287,7 +287,7 @@ SceneInfo cast(const Model<D>& model, const State<D>& start, const std::vector<P
     cast.springs.push_back({s.a.body, s.b.body, s.rest_length, s.stiffness, way(s.a, s.b)});
   for (const Joint<D>& j : model.joints) {
     cast.joints.push_back({j.name, j.kind, j.a.body, j.b.body, j.length, to_3d<D>(j.axis), j.lower, j.upper});
-    cast.joints.back().start = way(j.a, j.b);
+    cast.joints.back().start = way(j.a, j.b), cast.joints.back().later = j.later;
     if (!equations<D>(j.kind).mechanism) continue;
     SceneInfo::Joint& it = cast.joints.back();
     const auto add = [&](const End<D>& end) { it.places.push_back({end.body, to_3d<D>(end.local)}); };

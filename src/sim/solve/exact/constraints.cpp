@@ -432,19 +432,31 @@ bool ExactSolver<D>::holds(const Constraint& constraint, ModeKind kind) {
   }
 }
 
-// Scales down the motion of bodies that are lifted out of an overlap, by the energy of their height.
+// Bodies that are lifted out of an overlap: the energy of their height is the work of pushing them out. By
+// approximate forces they overlap farther, and pay it by their spin and by what they move up or down, as far
+// as that is enough; what goes along the ground goes on.
 template <int D>
 void ExactSolver<D>::pay_for_lift(State<D>& state) {
+  const double g = std::sqrt(model_.gravity.squaredNorm());
+  if (g == 0) return;
+  const Vec<D> down = model_.gravity / g;
+  if (corrections_.empty()) corrections_.assign(model_.bodies.size(), Vec<D>::Zero());
   const auto lifted = [&](int body) {
     return -model_.bodies[body].mass * model_.gravity.dot(state.x[body] - scratch_.placed[body]);
   };
   const auto left = [](double more, double has) { return std::sqrt(std::max(0.0, 1 - more / has)); };
   for (const int body : dynamics_.bodies()) {
     const double more = lifted(body);
-    const double has = more > 0 ? kinetic(model_, state, body) : 0;
-    if (has <= 0) continue;
-    state.v[body] *= left(more, has);
-    if (const int k = turning(state, body); k >= 0) state.spin[k] *= left(more, has);
+    if (more <= 0) continue;
+    const double m = model_.bodies[body].mass, falls = down.dot(state.v[body]);
+    const Vec<D> along = state.v[body] - falls * down;
+    const double has = std::max(0.0, kinetic(model_, state, body) - 0.5 * m * along.squaredNorm());
+    const double pays = progress_.rough ? std::min(more, has) : 0;
+    if (pays > 0) {
+      state.v[body] = along + left(pays, has) * falls * down;
+      if (const int k = turning(state, body); k >= 0) state.spin[k] *= left(pays, has);
+    }
+    corrections_[body] -= (more - pays) / (m * g) * down;
   }
   for (const int i : active_.subset.chains) {
     double more = 0, has = 0;
@@ -509,7 +521,7 @@ void ExactSolver<D>::project_state(State<D>& state, double h, bool impacts_follo
     if (left > worst) break;
     worst = left;
   }
-  if (moved > limits_.touching_gap && !progress_.rough) pay_for_lift(state);
+  if (moved > limits_.touching_gap) pay_for_lift(state);
 
   again();
   // what has jumped strikes what it holds or bears: an impact

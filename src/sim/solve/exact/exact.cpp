@@ -167,6 +167,7 @@ void ExactSolver<D>::collect_bodies(State<D>& state) {
 
 template <int D>
 bool ExactSolver<D>::collide(StepPart<D> step) {
+  corrections_.clear();
   State<D>& state = step.state;
   const std::size_t n = model_.bodies.size();
   resize_for(state);

@@ -45,6 +45,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void sleep(StepPart<D> step) override;
 
   void watch(Course<D>* course) override { course_ = course; }
+  const Vec<D>* corrections() const override { return corrections_.empty() ? nullptr : corrections_.data(); }
 
   /// Moves one body that meets only walls and fixed bodies, and writes the forces of its contacts into those
   /// that `state` has already. Requires Serves::lone.
@@ -290,6 +291,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void apply_impulses(State<D>& state, const Row<D>& row, double p, bool places);
   void project_state(State<D>& state, double h, bool impacts_follow = false);
   void pay_for_lift(State<D>& state);
+  std::vector<Vec<D>> corrections_;  // of this step, m: see corrections(); empty: none
 
   // chain_responses.cpp
   double self_coupling(int row) const;
