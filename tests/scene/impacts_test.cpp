@@ -504,6 +504,26 @@ TEST(Impacts, WhatSleepsBesideWhatIsStruckIsNoWall) {
   }
 }
 
+// One that meets a body at rest where a step ends, but for rounding, finds it awake: it would be a wall.
+TEST(Impacts, WhatSleepsIsNoWallWhereAStepEnds) {
+  for (const int dimension : {2, 3}) {
+    for (const int rate : {60, 100, 240, 300, 600}) {
+      for (const double fast : {0.1, 0.15, 0.2, 0.25, 0.7, 2.0}) {
+        for (const int steps : {2, 7, 12, 24}) {
+          const std::string more = "elasticity = 1\nfriction = 0\n";
+          const TextRun run(empty_room(kManners[2], dimension, "") + fmt::format("rate = {}\n", rate) +
+                            ball_at(dimension, "cue", 1, 0, 0, fast, 0, more) +
+                            ball_at(dimension, "target", 1, 0.2 + fast * steps / rate, 0, 0, 0, more));
+          const sim::Snapshot end = run.at(1);
+          EXPECT_NEAR(end.bodies[number_of(run, "cue")].velocity.x(), 0, 1e-9)
+              << dimension << "D at " << rate << ", " << fast << " m/s, " << steps;
+          EXPECT_NEAR(end.bodies[number_of(run, "target")].velocity.x(), fast, 1e-9);
+        }
+      }
+    }
+  }
+}
+
 // The forces that the first instant shows are also those of what lies a rounding, or a fall shorter than a
 // step, above its ground; not of what falls farther, nor of what strikes it in the first step.
 TEST(Impacts, ForcesAtTheStartAreOfWhatLiesThere) {

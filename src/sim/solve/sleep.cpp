@@ -122,9 +122,10 @@ double Sleep<D>::reach(const State<D>& state, const Contact<D>& contact, int awa
   // by free fall two neighbours would wake each other in turns.
   if (state.quiet[awake] > interval_ && !joins(contact)) {
     const double along = contact.normal.dot(v + cross_velocity<D>(w, Vec<D>(contact.point - state.x[awake])));
-    return span * std::max(0.0, awake == contact.key.a ? -along : along);
+    return kSooner * span * std::max(0.0, awake == contact.key.a ? -along : along);
   }
-  return span * (std::sqrt(v.squaredNorm()) + bounding_radius_[awake] * std::sqrt(w.squaredNorm())) +
+  return kSooner * span *
+             (std::sqrt(v.squaredNorm()) + bounding_radius_[awake] * std::sqrt(w.squaredNorm())) +
          0.5 * span * (span + h) * g_;
 }
 

@@ -33,6 +33,10 @@ class Sleep {
     exact      // to rounding, springs and explosions among them, and so are its velocities
   };
 
+  /// Times as fast as it moves: so much sooner a body counts as reaching another, so that one that meets it
+  /// where the span ends, but for rounding, finds it awake.
+  static constexpr double kSooner = 1.001;
+
   /// As a fraction of g: the acceleration that iterated forces may leave an island in equilibrium.
   static constexpr double kBalanced = 1e-6;
 
@@ -45,8 +49,8 @@ class Sleep {
     double residual = 0;            // m/s^2: what the solver's forces leave any point at most; written by it
   };
 
-  /// Keeps `model` by reference. `deepest`: relative to the larger bounding radius of two; islands with deeper
-  /// overlaps do not rest.
+  /// Keeps `model` by reference. `deepest`: relative to the larger bounding radius of two; islands with
+  /// deeper overlaps do not rest.
   Sleep(const Model<D>& model, Forces forces, double deepest = std::numeric_limits<double>::infinity());
 
   /// Whether to look for candidates after this step: sixty times a second, or with exact forces each time.

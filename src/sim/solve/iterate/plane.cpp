@@ -340,7 +340,7 @@ bool PlaneIterative::wake_struck(State<D>& state, double h) {
       const Feature feature = Feature::of(word);
       if (feature.kind != Feature::none &&
           pairs_.place(pair, poses_, feature).gap <
-              h * (struck_speeds_.speed(pair.a) + struck_speeds_.speed(pair.b)))
+              Sleep<D>::kSooner * h * (struck_speeds_.speed(pair.a) + struck_speeds_.speed(pair.b)))
         return true;
     }
     return false;

@@ -90,7 +90,7 @@ bool SpaceIterative::wake_struck(State<D>& state, double h) {
     more = false;
     for (const ContactConstraint& touch : touches_)
       if (!fixed(touch.a) && !fixed(touch.b) &&
-          touch.gap < h * (struck_speeds_.speed(touch.a) + struck_speeds_.speed(touch.b)))
+          touch.gap < Sleep<D>::kSooner * h * (struck_speeds_.speed(touch.a) + struck_speeds_.speed(touch.b)))
         more = strike(touch.a, touch.b) || more;
   }
   // what sleeps is no touch yet of what is still slow
@@ -98,8 +98,8 @@ bool SpaceIterative::wake_struck(State<D>& state, double h) {
     const int i = struck_bodies_[k];
     for (int j = 0; j < n; ++j) {
       if (!sleeps(j) || fixed(j) || struck_speeds_.speed(j) > 0) continue;
-      const double near =
-          bounding_radius_[std::size_t(i)] + bounding_radius_[std::size_t(j)] + h * struck_speeds_.speed(i);
+      const double near = bounding_radius_[std::size_t(i)] + bounding_radius_[std::size_t(j)] +
+                          Sleep<D>::kSooner * h * struck_speeds_.speed(i);
       if ((stances_[std::size_t(i)].x - stances_[std::size_t(j)].x).squaredNorm() < near * near) strike(i, j);
     }
   }
