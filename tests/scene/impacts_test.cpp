@@ -381,6 +381,41 @@ TEST(Impacts, EndsOfJointsHoldWhatIsStruck) {
   }
 }
 
+// A slack rope that snaps taut where one of its ends touches another body: both ends go on together, without
+// a rebound, as by the direct solver, whenever within a step it is.
+TEST(Impacts, ARopeThatSnapsTautBesideAContactDoesNotRebound) {
+  for (const int dimension : {2, 3}) {
+    const std::string z = dimension == 2 ? "" : ", 0", deep = dimension == 2 ? "" : ", 0.3";
+    for (const int rate : {60, 600}) {
+      for (const double length : {0.7, 0.8, 0.9, 1.2}) {
+        const auto speeds = [&](const Manner& manner) {
+          const std::string clay = "elasticity = 0\nfriction = 0\nmass = 1\n";
+          const TextRun run(
+              empty_room(manner, dimension, "") + fmt::format("rate = {}\n", rate) +
+              fmt::format(
+                  "[[ball]]\nname = \"a\"\nposition = [-0.6, 0{0}]\nradius = 0.2\nvelocity = [-2, 0{0}]\n",
+                  z) +
+              clay +
+              fmt::format("[[box]]\nname = \"b\"\nposition = [0, 0{}]\nsize = [0.3, 0.4{}]\n", z, deep) +
+              clay +
+              fmt::format(
+                  "[[ball]]\nname = \"c\"\nposition = [0.36, 0.1{0}]\nradius = 0.2\nvelocity = [-1, 0{0}]\n",
+                  z) +
+              clay +
+              fmt::format("[[joint]]\ntype = \"rope\"\nbetween = [\"a\", \"b\"]\nlength = {}\n", length));
+          const sim::Snapshot end = run.at(0.8);
+          return std::pair(end.bodies[number_of(run, "a")].velocity.x(),
+                           end.bodies[number_of(run, "b")].velocity.x());
+        };
+        const auto exact = speeds(kManners[0]), many = speeds(kManners[2]);
+        SCOPED_TRACE(fmt::format("{}D at {}, {} m", dimension, rate, length));
+        EXPECT_NEAR(many.first, exact.first, 3e-3);
+        EXPECT_NEAR(many.second, exact.second, 3e-3);
+      }
+    }
+  }
+}
+
 // A ball that bounces on what lies at rest, one block or two, loses what e takes and nothing for the step in
 // which it strikes: the block under it does not fall before it is struck.
 TEST(Impacts, WhatLiesAtRestIsStruckAtRest) {

@@ -81,6 +81,12 @@ class JointSolver final : public System {
   /// One iteration for position correction: the velocities of body_motion() are displacements. Leaves the
   /// impulses as they are.
   void solve_positions();
+  /// Whether the last step() stopped a joint at its end, or a rope where it was taut, within itself: then
+  /// bodies on joints have gone where no velocity of the step's ends leads.
+  bool stopped() const { return stopped_; }
+  /// What that has changed of the velocity and spin of a body of bodies(), in all; where stopped().
+  const Vec<D>& jump(int body) const { return jumps_[std::size_t(body)]; }
+  const AngularVec<D>& spin_jump(int body) const { return spin_jumps_[std::size_t(body)]; }
   int components() const { return factors_.components(); }
   /// The component of a body's joints, or -1.
   int component(int body) const { return component_of_body_[body]; }
@@ -340,7 +346,9 @@ class JointSolver final : public System {
   Drives<D> drives_;
   ForwardDynamics<D>* dynamics_ = nullptr;  // while it is stepped
   const State<D>* begun_ = nullptr;
-  bool first_stage_ = true;
+  bool first_stage_ = true, stopped_ = false;
+  std::vector<Vec<D>> jumps_;  // bodies
+  std::vector<AngularVec<D>> spin_jumps_;
   // Of the bounded row of a block, in the free motion.
   struct Acting {
     Load load = none;  // as which it is an equality

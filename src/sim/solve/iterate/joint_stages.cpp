@@ -38,7 +38,7 @@ constexpr double kSlower = 2;          // times what forces change in a step: it
 template <int D>
 double JointSolver<D>::step(ForwardDynamics<D>& dynamics, Integrate* integrate, State<D>& state, double t,
                             double h, Stages& stages) {
-  dynamics_ = &dynamics, begun_ = &state;
+  dynamics_ = &dynamics, begun_ = &state, stopped_ = false;
   set_poses(state, t);
   begin_motors();
   double given = 0;
@@ -312,6 +312,11 @@ bool JointSolver<D>::drop_puller() {
 // Stops what is at its end and comes beyond. The work of kinematic bodies, J.
 template <int D>
 double JointSolver<D>::strike(State<D>& state, double t) {
+  if (!stopped_) {
+    jumps_.assign(at_.size(), Vec<D>::Zero());
+    spin_jumps_.assign(at_.size(), AngularVec<D>::Zero());
+  }
+  stopped_ = true;
   set_poses(state, t);
   for (const int k : bounded_blocks_) {
     Acting& acting = acting_[std::size_t(k)];
@@ -338,8 +343,12 @@ double JointSolver<D>::strike(State<D>& state, double t) {
   }
   for (const int body : bodies_) {
     if (!response_.moves(body)) continue;
+    jumps_[std::size_t(body)] += at_[body].v - state.v[std::size_t(body)];
     state.v[std::size_t(body)] = at_[body].v;
-    if (const int k = turning(state, body); k >= 0) state.spin[std::size_t(k)] = at_[body].w;
+    const int k = turning(state, body);
+    if (k < 0) continue;
+    spin_jumps_[std::size_t(body)] += at_[body].w - state.spin[std::size_t(k)];
+    state.spin[std::size_t(k)] = at_[body].w;
   }
   return work;
 }

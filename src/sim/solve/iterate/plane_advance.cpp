@@ -25,6 +25,8 @@ void PlaneIterative::place_bodies(StepPart<D> part) {
   std::fill(closing_.begin(), closing_.end(), 0);
   for (const int i : slow_)
     closing_[batches_[i / kLanes].a[i % kLanes]] = closing_[batches_[i / kLanes].b[i % kLanes]] = 1;
+  if (joints_.stopped())
+    for (const int i : joints_.bodies()) closing_[i] = 0;
 
   const auto move = [&](int i, Motion d) {
     const Motion& v = moving_[i];

@@ -129,6 +129,11 @@ void Impacts::gather_ends(double when, const Step& step, JointSolver<2>& joints)
         Motion v;
         move(member, when, step, ignored, v);
         joints.body_motion(member).v = {v.x, v.y}, joints.body_motion(member).w[0] = v.w;
+        if (!joints.stopped()) continue;
+        // flights have it by and by
+        const double left = 1 - when / step.pace.h;
+        joints.body_motion(member).v += left * joints.jump(member);
+        joints.body_motion(member).w += left * joints.spin_jump(member);
       }
       for (const auto& end : reached) ends_.push_back({&end, joints.row_speed(end)});
     }

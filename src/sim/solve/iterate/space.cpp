@@ -176,6 +176,7 @@ void SpaceIterative::start_contacts(StepPart<D> part) {
   }
   for (const int i : joints_.bodies()) {
     if (joints_.component(i) >= 0 && components_[joints_.component(i)]) closing_[i] = 1;
+    if (joints_.stopped()) closing_[i] = 0;
   }
 }
 

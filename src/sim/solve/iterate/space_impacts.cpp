@@ -85,6 +85,11 @@ void SpaceIterative::gather_ends(double t, double h) {
         if (inactive_[member]) continue;
         const BodyMotion<D>& at = flown(member, t, h).stance;
         joints_.body_motion(member).v = at.v, joints_.body_motion(member).w = at.w;
+        if (!joints_.stopped()) continue;
+        // flights have it by and by
+        const double left = 1 - t / h;
+        joints_.body_motion(member).v += left * joints_.jump(member);
+        joints_.body_motion(member).w += left * joints_.spin_jump(member);
       }
       for (const auto& end : reached) struck_ends_.push_back({&end, joints_.row_speed(end)});
     }
@@ -290,7 +295,9 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
   }
   for (int i = 0; i < n; ++i) {
     if (when_[i] < 0) continue;
-    const Flown end = flown(i, h, h);
+    Flown end = flown(i, h, h);
+    if (joints_.stopped() && joints_.has(i))
+      end.stance.x += bends_[i], end.turn = turned<D>(end.turn, turn_bends_[i]);
     state.x[i] = x_free_[i] = end.stance.x, state.v[i] = v_free_[i] = moving_[i].v = end.stance.v;
     if (const int k = turning(state, i); k >= 0) {
       state.turn[k] = turn_free_[k] = end.turn, state.spin[k] = w_free_[k] = moving_[i].w = end.stance.w;
@@ -325,6 +332,16 @@ void SpaceIterative::begin_flights(const State<D>& state, double h) {
   each(workers(), n + 1, kBodyPiece, [&](int first, int end) {
     for (int i = first; i < end; ++i) begin(i);
   });
+  if (!joints_.stopped()) return;
+  // what has been stopped on its way is elsewhere than flights lead
+  bends_.assign(std::size_t(n), Vec<D>::Zero()), turn_bends_.assign(std::size_t(n), AngularVec<D>::Zero());
+  for (const int i : joints_.bodies()) {
+    if (inactive_[i]) continue;
+    const Flown end = fly(i, h, h);
+    bends_[i] = x_free_[i] - end.stance.x;
+    if (const int k = turning(state, i); k >= 0)
+      turn_bends_[i] = logarithm(product(turn_free_[k], inverse<D>(end.turn)));
+  }
 }
 
 // those gaps that close fast before anything has been struck, each due then
