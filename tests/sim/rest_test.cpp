@@ -603,7 +603,8 @@ TYPED_TEST(SleepIn, AnIslandWakesWhenSomethingAwakeComesWithinReach) {
     world.state.frozen = {1, 1, 0, 1}, world.state.quiet.assign(4, 0.0);
     world.state.v[2] = at<D>(-v, 0), world.state.spin[2] = about_z<D>(w);
     const double radius = bounding_radius(world.model.bodies[2].shape);
-    world.state.contacts[1].gap = span * (v + w * radius) + 0.5 * kG * span * (span + h) + more;
+    world.state.contacts[1].gap =
+        Sleep<D>::kSooner * span * (v + w * radius) + 0.5 * kG * span * (span + h) + more;
     Sleep<D> sleep(world.model, Sleep<D>::Forces::iterated);
     EXPECT_EQ(sleep.wake(world.state, world.state.contacts, span, h), more < 0);
     const char asleep = more < 0 ? 0 : 1;

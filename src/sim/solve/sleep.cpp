@@ -3,7 +3,7 @@
 //   2. it is in equilibrium:           |a| + |w'| R <= share g, under the forces of the solver, or of Statics
 //   3. its motion is held:             Mobility leaves it no freedom
 // and wakes when something awake comes nearer than it may move until it is looked at again,
-//   gap < span (|v| + |w| R) + g span (span + h) / 2
+//   gap < 1.001 span (|v| + |w| R) + g span (span + h) / 2
 // where it falls by steps of h: contacts press by the velocity at the end of each.
 // The rule and its limits are told in sim/constraint/mobility.h.
 

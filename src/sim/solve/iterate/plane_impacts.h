@@ -10,6 +10,7 @@
 #include "sim/solve/iterate/joint_solver.h"
 #include "sim/solve/iterate/plane_contact_rows.h"
 #include "sim/solve/iterate/plane_pair_cache.h"
+#include "sim/solve/iterate/struck_ends.h"
 
 namespace obscura::sim::plane {
 
@@ -92,11 +93,6 @@ class Impacts {
     Impact impact;
     Motion a, b;
     bool moved = false;  // by the impact, directly or by ends of joints
-  };
-  // an end of a joint that is reached where something meets, and its J v there, m/s or rad/s
-  struct StruckEnd {
-    const JointSolver<2>::JointResponse* response;
-    double speed;
   };
   // what does not change while the impacts of a step are resolved
   struct Step {
@@ -191,8 +187,7 @@ class Impacts {
   std::vector<int> crowd_;                   // these
   std::vector<Meeting> meetings_;            // in one instant, the first that was found first
   std::vector<std::pair<int, int>> closed_;  // their touches: of which meeting, which of its two
-  std::vector<StruckEnd> ends_;
-  std::vector<int> struck_components_;  // of joints
+  StruckEnds<2> ends_;
   InstantImpact<2> instant_;
   std::vector<JointSolver<2>::JointResponse> instant_responses_;  // of its rows
 };

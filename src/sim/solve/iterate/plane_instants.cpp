@@ -109,36 +109,25 @@ void Impacts::take_alone(const Impact& first) {
     if (first.met[k]) closed_.emplace_back(0, k);
 }
 
-// The ends of joints that are reached by what meets, into ends_, and the speeds of their rows; none of more
-// than few.
+// the ends of joints that are reached by what meets, into ends_
 void Impacts::gather_ends(double when, const Step& step, JointSolver<2>& joints) {
-  ends_.clear(), struck_components_.clear();
+  ends_.clear();
   if (joints.empty()) return;
   for (const Meeting& meeting : meetings_) {
     const Pair& pair = step.pairs[meeting.impact.pair];
     for (const int body : {pair.a, pair.b}) {
-      const int component = body < 0 ? -1 : joints.component(body);
-      if (component < 0 || std::count(struck_components_.begin(), struck_components_.end(), component) != 0)
-        continue;
-      struck_components_.push_back(component);
-      const auto reached = joints.reached_ends(component);
-      if (reached.empty()) continue;
-      for (const int member : joints.members(component)) {
-        if (now_[member].im == 0) continue;
+      if (body < 0) continue;
+      ends_.add(joints, body, 1 - when / step.pace.h, [&](int member, Vec<2>& v, AngularVec<2>& w) {
+        if (now_[member].im == 0) return false;
         Pose ignored;
-        Motion v;
-        move(member, when, step, ignored, v);
-        joints.body_motion(member).v = {v.x, v.y}, joints.body_motion(member).w[0] = v.w;
-        if (!joints.stopped()) continue;
-        // flights have it by and by
-        const double left = 1 - when / step.pace.h;
-        joints.body_motion(member).v += left * joints.jump(member);
-        joints.body_motion(member).w += left * joints.spin_jump(member);
-      }
-      for (const auto& end : reached) ends_.push_back({&end, joints.row_speed(end)});
+        Motion its;
+        move(member, when, step, ignored, its);
+        v = {its.x, its.y}, w[0] = its.w;
+        return true;
+      });
     }
   }
-  if (int(ends_.size()) > InstantImpact<2>::kMostEnds) ends_.clear();
+  ends_.limit();
 }
 
 // all that meets together; false where it goes pair after pair
@@ -157,12 +146,11 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
   }
   if (alone) take_alone(first);
   gather_ends(first.when, step, joints);
-  if (meetings_.size() == 1 && ends_.empty()) return false;
+  if (meetings_.size() == 1 && ends_.count() == 0) return false;
   Pose ignored;
   move(its.a, first.when, step, ignored, meetings_[0].a);
   move(its.b >= 0 ? its.b : int(now_.size()) - 1, first.when, step, ignored, meetings_[0].b);
-  const int count = int(closed_.size()), rows = 2 * count, ends = int(ends_.size()),
-            room = int(now_.size()) - 1;
+  const int count = int(closed_.size()), rows = 2 * count, room = int(now_.size()) - 1;
   const auto pair_of = [&](int k) -> const Pair& {
     return step.pairs[meetings_[closed_[k].first].impact.pair];
   };
@@ -184,7 +172,7 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     return tied_to(pair.a) || tied_to(pair.b);
   });
 
-  instant_.resize(count, ends);
+  instant_.resize(count, ends_.count());
   auto& K = instant_.K;
   if (tied && instant_responses_.empty()) {
     instant_responses_.resize(InstantImpact<2>::kMostRows);
@@ -224,16 +212,7 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     // joints may leave it nothing to move
     if (i % 2 == 0 && !(K(i, i) > InstantImpact<2>::kLockedPush * (own[0].im + own[1].im))) return false;
   }
-  for (int i = 0; i < ends; ++i) {
-    const JointSolver<2>::JointResponse& end = *ends_[i].response;
-    const int row = rows + i;
-    instant_.speeds[row] = ends_[i].speed;
-    for (int j = 0; j < row; ++j) {
-      const auto& other = j < rows ? instant_responses_[j] : *ends_[j - rows].response;
-      instant_.K(row, j) = instant_.K(j, row) = joints.response_between(end, other);
-    }
-    instant_.K(row, row) = joints.response_between(end, end);
-  }
+  if (tied) ends_.couple(joints, std::span(instant_responses_).first(std::size_t(rows)), instant_);
   ++instants_;
   if (!instant_.solve()) return false;
 
@@ -242,8 +221,7 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     meetings_[number].impact.n[touch] += instant_.p[2 * k];
     meetings_[number].impact.t[touch] += instant_.p[2 * k + 1];
   }
-  bool ends_push = false;
-  for (int i = 0; i < ends; ++i) ends_push = ends_push || instant_.p[rows + i] != 0;
+  const bool ends_push = ends_.push(instant_);
   for (Meeting& meeting : meetings_) {
     const Pair& pair = step.pairs[meeting.impact.pair];
     meeting.moved = meeting.impact.any() || (ends_push && (tied_to(pair.a) || tied_to(pair.b)));
@@ -271,14 +249,9 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     }
     for (const StruckSide& p : own) give(p.body, p.x * (p.im * l), p.y * (p.im * l), p.ii * (p.turn * l));
   }
-  for (int i = 0; i < ends; ++i) {
-    const double l = instant_.p[rows + i];
-    if (l == 0) continue;
-    drive_work_ += l * joints.given_at_end(*ends_[i].response);
-    joints.each_push(*ends_[i].response, l, [&](int body, const Vec<2>& v, const AngularVec<2>& w) {
-      give(body, v[0], v[1], w[0]);
-    });
-  }
+  drive_work_ += ends_.apply(joints, instant_, [&](int body, const Vec<2>& v, const AngularVec<2>& w) {
+    give(body, v[0], v[1], w[0]);
+  });
   return true;
 }
 

@@ -20,6 +20,7 @@
 #include "sim/solve/iterate/iterative.h"
 #include "sim/solve/iterate/pair_levels.h"
 #include "sim/solve/iterate/space_batches.h"
+#include "sim/solve/iterate/struck_ends.h"
 #include "sim/solve/iterate/struck_speeds.h"
 
 namespace obscura::sim {
@@ -307,14 +308,8 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<Row<D>> impact_rows_;
   std::vector<RowResponse<D>> impact_responses_;
   std::vector<JointSolver<D>::JointResponse> tied_responses_;
-  // ends of joints that are reached where something is struck, and their J v there, m/s or rad/s
-  struct StruckEnd {
-    const JointSolver<D>::JointResponse* response;
-    double speed;
-  };
-  std::vector<StruckEnd> struck_ends_;
-  std::vector<int> struck_components_;  // of joints
-  bool impact_tied_ = false;            // whether joints answer the impact
+  StruckEnds<D> struck_ends_;
+  bool impact_tied_ = false;  // whether joints answer the impact
 };
 
 }  // namespace obscura::sim

@@ -68,33 +68,22 @@ void SpaceIterative::couple_rows(Eigen::Ref<Eigen::MatrixXd> K) const {
   }
 }
 
-// The ends of joints that are reached by what meets at a time, and the speeds of their rows; none of more
-// than few.
+// the ends of joints that are reached by what meets at a time
 void SpaceIterative::gather_ends(double t, double h) {
-  struck_ends_.clear(), struck_components_.clear();
+  struck_ends_.clear();
   if (joints_.empty()) return;
   for (const int touch : meets_) {
     for (const int body : {touches_[touch].a, touches_[touch].b}) {
-      const int component = body == int(model_.bodies.size()) ? -1 : joints_.component(body);
-      if (component < 0 || std::count(struck_components_.begin(), struck_components_.end(), component) != 0)
-        continue;
-      struck_components_.push_back(component);
-      const auto reached = joints_.reached_ends(component);
-      if (reached.empty()) continue;
-      for (const int member : joints_.members(component)) {
-        if (inactive_[member]) continue;
+      if (body == int(model_.bodies.size())) continue;
+      struck_ends_.add(joints_, body, 1 - t / h, [&](int member, Vec<D>& v, AngularVec<D>& w) {
+        if (inactive_[member]) return false;
         const BodyMotion<D>& at = flown(member, t, h).stance;
-        joints_.body_motion(member).v = at.v, joints_.body_motion(member).w = at.w;
-        if (!joints_.stopped()) continue;
-        // flights have it by and by
-        const double left = 1 - t / h;
-        joints_.body_motion(member).v += left * joints_.jump(member);
-        joints_.body_motion(member).w += left * joints_.spin_jump(member);
-      }
-      for (const auto& end : reached) struck_ends_.push_back({&end, joints_.row_speed(end)});
+        v = at.v, w = at.w;
+        return true;
+      });
     }
   }
-  if (int(struck_ends_.size()) > InstantImpact<D>::kMostEnds) struck_ends_.clear();
+  struck_ends_.limit();
 }
 
 // the rows of what meets at a time, n and across it of each gap, their M^-1 J', K and J v; false where joints
@@ -104,7 +93,7 @@ bool SpaceIterative::build_impact_rows(double t, double h) {
   begin_rows(count);
   impact_tied_ = false;
   gather_ends(t, h);
-  instant_.resize(count, int(struck_ends_.size()));
+  instant_.resize(count, struck_ends_.count());
   for (int k = 0; k < count; ++k) {
     const ContactConstraint& touch = touches_[meets_[k]];
     const Instant at = instant(meets_[k], t, h);
@@ -141,15 +130,7 @@ bool SpaceIterative::build_impact_rows(double t, double h) {
     const double without = response_.inverse_mass(row.a) + response_.inverse_mass(row.b);
     if (i % D == 0 && !(K(i, i) > InstantImpact<D>::kLockedPush * without)) return false;
   }
-  for (int i = 0; i < int(struck_ends_.size()); ++i) {
-    const auto& [end, speed] = struck_ends_[i];
-    const int row = rows + i;
-    instant_.speeds[row] = speed;
-    for (int j = 0; j <= row; ++j) {
-      const auto& other = j < rows ? tied_responses_[j] : *struck_ends_[j - rows].response;
-      K(row, j) = K(j, row) = joints_.response_between(*end, other);
-    }
-  }
+  struck_ends_.couple(joints_, std::span(tied_responses_).first(std::size_t(rows)), instant_);
   return true;
 }
 
@@ -198,16 +179,11 @@ bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work)
                     it.v += dv, it.w += p * spin;
                   });
   }
-  for (int i = 0; i < int(struck_ends_.size()); ++i) {
-    const double impulse = impulses[rows + i];
-    if (impulse == 0) continue;
-    if (!carries_.empty() && !work.empty())
-      work[0] += impulse * joints_.given_at_end(*struck_ends_[i].response);
-    joints_.each_push(*struck_ends_[i].response, impulse,
-                      [&](int body, const Vec<D>& dv, const AngularVec<D>& dw) {
-                        flown_[body].stance.v += dv, flown_[body].stance.w += dw;
-                      });
-  }
+  const double gives =
+      struck_ends_.apply(joints_, instant_, [&](int body, const Vec<D>& dv, const AngularVec<D>& dw) {
+        flown_[body].stance.v += dv, flown_[body].stance.w += dw;
+      });
+  if (!carries_.empty() && !work.empty()) work[0] += gives;
   return true;
 }
 
