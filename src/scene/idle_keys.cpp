@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <variant>
 
@@ -40,11 +41,12 @@ bool nonzero(const Node* node) {
   return !node->is_text() && !std::holds_alternative<bool>(node->value) && node->number() != 0;
 }
 
-// whether the room, a body or an event gives any of these
-bool any_given(const Node& top, std::initializer_list<const char*> keys) {
+// whether the room, a body, a copy of one or an event gives any of these
+bool any_given(const Node& top, std::span<const CopySet> copies, std::initializer_list<const char*> keys) {
   const Node* room = top.find("room");
   bool any = false;
   for (const char* key : keys) {
+    any = any || std::ranges::any_of(copies, [&](const CopySet& it) { return it.path.front().name == key; });
     any = any || (room && room->find(key));
     each_body(top, [&](const Fields& body) { any = any || body.given(key); });
     each_action(top, [&](const Node& action) {
@@ -66,19 +68,17 @@ void refuse_after_end(const Node& top, Diagnostics& complaints) {
     complaints.add(fields.place(key), fmt::format("{} at {:g} s never comes: the scene ends at {:g} s", what,
                                                   sim::value(fields.rational(key)), sim::value(end)));
   };
-  each_table(top, "when", [&](const Fields& when) {
-    if (const Node* time = when.given("time"); time && !time->is_text()) refuse(when, "time", "an event");
-  });
+  each_table(top, "when", [&](const Fields& when) { refuse(when, "time", "an event"); });
   each_table(top, "explosion", [&](const Fields& explosion) { refuse(explosion, "start", "an explosion"); });
   each_body(top, [&](const Fields& body) { refuse(body, "release", "a release"); });
 }
 
-void refuse_idle_fields(const Node& top, Diagnostics& complaints) {
+void refuse_idle_fields(const Node& top, std::span<const CopySet> copies, Diagnostics& complaints) {
   const Node* found = top.find("room");
   if (!found) return;
   const Fields room(*found, "room");
   const auto needs = [&](const char* key, std::initializer_list<const char*> others, const char* why) {
-    if (nonzero(room.given(key)) && !any_given(top, others)) complaints.add(room.place(key), why);
+    if (nonzero(room.given(key)) && !any_given(top, copies, others)) complaints.add(room.place(key), why);
   };
   needs("wind", {"drag", "quadratic_drag"},
         "'wind' does nothing: it acts by 'drag' or 'quadratic_drag', which neither the room nor a body has");
@@ -117,9 +117,9 @@ void refuse_idle_body_keys(const Node& top, Diagnostics& complaints) {
 
 }  // namespace
 
-void refuse_idle_keys(const Node& top, Diagnostics& complaints) {
+void refuse_idle_keys(const Node& top, std::span<const CopySet> copies, Diagnostics& complaints) {
   refuse_after_end(top, complaints);
-  refuse_idle_fields(top, complaints);
+  refuse_idle_fields(top, copies, complaints);
   refuse_idle_body_keys(top, complaints);
   each_table(top, "when", [&](const Fields& when) {
     if (when.given("time") && is(when.given("again"), true))

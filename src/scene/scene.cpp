@@ -328,7 +328,7 @@ Scene parse(const std::string& text, const std::string& file, const std::vector<
   const std::vector<CopySet> copy_sets = apply(sets, top, complaints);
   const Dimension told = dimension(top);
   check(top, told, complaints);
-  if (complaints.none()) refuse_idle_keys(top, complaints);
+  if (complaints.none()) refuse_idle_keys(top, copy_sets, complaints);
 
   Scene scene;
   MarksPut put = put_marks(top, marks, complaints);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 
 #include "draw/compose/annotations.h"
 #include "draw/compose/comparison.h"
@@ -479,22 +480,28 @@ TEST(Labels, HiddenOnTheirWayDoNotJump) {
   EXPECT_FALSE(course.moves.empty());
 }
 
+/// The words of a label at a place of a room that shows its axes.
+std::optional<Text> beside_axes(const Made& made, const Illustrator& artist, const sim::Vec3& at) {
+  Marks marks;
+  marks.axes = true;
+  Marks::Label label;
+  label.text = "E = 5 J", label.at.local = at;
+  marks.labels.push_back(label);
+  RunAhead ahead{{made.now}, {0}, {}, {}, {}};
+  const Annotations annotations(marks, artist, ahead, {}, 60, 0);
+  List list;
+  annotations.draw(0, artist.projection(0, made.now), made.now, 0, list);
+  const Text* text = said(list, "E");
+  return text ? std::optional(*text) : std::nullopt;
+}
+
 /// Words at a place of the room stand beside the axes, not on them.
 TEST(Labels, StandBesideAxes) {
   Made made = room(8, 4.5);
   const Illustrator artist = made.depictor();
   const Projection projection = artist.projection(0, made.now);
   for (const sim::Vec3& at : {sim::Vec3(0.7, 0, 0), sim::Vec3(0.05, 0.8, 0), sim::Vec3(-0.05, 0.03, 0)}) {
-    Marks marks;
-    marks.axes = true;
-    Marks::Label label;
-    label.text = "E = 5 J", label.at.local = at;
-    marks.labels.push_back(label);
-    RunAhead ahead{{made.now}, {0}, {}, {}, {}};
-    const Annotations annotations(marks, artist, ahead, {}, 60, 0);
-    List list;
-    annotations.draw(0, projection, made.now, 0, list);
-    const Text* text = said(list, "E");
+    const std::optional<Text> text = beside_axes(made, artist, at);
     ASSERT_TRUE(text);
     const Point corner = projection.page({0, 0, 0});
     EXPECT_EQ(covered(*text, corner, projection.page({2, 0, 0})), 0) << at.transpose();
@@ -525,16 +532,7 @@ TEST(Labels, StandBesideTheAxesOfSpace) {
     const Projection projection = artist.projection(0, made.now);
     for (double x = -0.2; x < 0.21; x += 0.05)
       for (double y = -0.2; y < 0.21; y += 0.05) {
-        Marks marks;
-        marks.axes = true;
-        Marks::Label label;
-        label.text = "E = 5 J", label.at.local = {x, y, 0};
-        marks.labels.push_back(label);
-        RunAhead ahead{{made.now}, {0}, {}, {}, {}};
-        const Annotations annotations(marks, artist, ahead, {}, 60, 0);
-        List list;
-        annotations.draw(0, projection, made.now, 0, list);
-        const Text* text = said(list, "E");
+        const std::optional<Text> text = beside_axes(made, artist, {x, y, 0});
         ASSERT_TRUE(text);
         for (const sim::Vec3& axis : {sim::Vec3(0.5, 0, 0), sim::Vec3(0, 0.5, 0), sim::Vec3(0, 0, 0.5)})
           EXPECT_LT(covered(*text, projection.page({0, 0, 0}), projection.page(axis)), 1)

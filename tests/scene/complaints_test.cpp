@@ -77,6 +77,10 @@ TEST(Diagnostics, KeysThatCanDoNothingAreTold) {
                       "\n[[when]]\ntime = 1\ndo = [{ set = \"a.charge\", to = 1 }]")
                     .empty());
   }
+  EXPECT_TRUE(
+      wrong("[[ball]]\nname = \"a\"\ncopies = { count = 2, offset = [0.5, 0] }\n[room]\nelectric = [1, 0]",
+            {"a[1].charge=1"})
+          .empty());
   all_told(none + "ground_drag = 1\n" + ball, "'ground_drag' does nothing");
   all_told(none + ball + "ground_drag = 1", "'ground_drag' does nothing");
   all_told("[[box]]\ninertia = 1\nrotation = false", "'inertia' does nothing");
@@ -89,6 +93,8 @@ TEST(Diagnostics, KeysThatCanDoNothingAreTold) {
   all_told("duration = 1\n[[box]]\n[[explosion]]\nstrength = 1\nstart = 2",
            "an explosion at 2 s never comes");
   const std::string event = "[[box]]\n[[when]]\ntime = 2\ndo = [{ mark = \"k\" }]\n";
+  all_told("duration = 1\n[[box]]\n[[when]]\ntime = \"4/3\"\ndo = [{ mark = \"k\" }]",
+           "an event at 1.33333 s");
   all_told("duration = 1\n" + event, "an event at 2 s never comes: the scene ends at 1 s");
   EXPECT_TRUE(wrong("duration = 2\n" + event).empty());
   EXPECT_TRUE(wrong("duration = 3\n" + event, {"duration=1"}).empty()) << "a shorter run";

@@ -72,7 +72,6 @@ class Account {
   using Pair = std::tuple<int, int, int>;
   void follow_turns(const sim::Snapshot& now);
   void follow_hands(const sim::Snapshot& now);
-  bool has_forces() const;
   std::vector<std::string> beginning() const;
   std::vector<std::pair<double, std::string>> causes() const;
   std::vector<std::string> events() const;
@@ -285,21 +284,6 @@ void Account::heed(const std::vector<sim::RunEvent>& events) {
   }
 }
 
-// of the scene, then or later
-bool Account::has_forces() const {
-  return std::visit(
-      [](const auto& world) {
-        const auto& model = world.model;
-        return std::any_of(model.forces.begin(), model.forces.end(),
-                           [](const auto& force) { return !force.subjects.empty(); }) ||
-               std::any_of(model.changes.begin(), model.changes.end(), [](const auto& change) {
-                 using Of = typename std::decay_t<decltype(change)>::Of;
-                 return change.of == Of::force || change.of == Of::gravity;
-               });
-      },
-      scene_.world);
-}
-
 std::vector<std::string> Account::beginning() const {
   std::vector<std::string> all;
   if (!scene_.look.title.empty()) all.push_back(headline(scene_.look));
@@ -307,7 +291,7 @@ std::vector<std::string> Account::beginning() const {
   all.push_back(fmt::format("In {} there {} {}{}.", cast_.dimension == 2 ? "the plane" : "space",
                             moving(cast_).size() == 1 ? "is" : "are", listed(cast_),
                             g > 0          ? fmt::format("; gravity is {} m/s²", numeral(g))
-                            : has_forces() ? ", without the room's gravity but with forces of the scene"
+                            : cast_.forces ? ", without the room's gravity but with forces of the scene"
                                            : "; there is no gravity"));
   for (std::string& sentence : shown_marks(scene_.film.marks, scene_.look, cast_))
     all.push_back(std::move(sentence));

@@ -87,7 +87,7 @@ struct SceneInfo {
   std::vector<Joint> joints;
   std::vector<Rail> rails;
   std::optional<double> surface{};  // the y of a fluid's, m
-  bool forces = false;              // beside gravity, drag, springs and explosions
+  bool forces = false;              // beside gravity, drag, springs and explosions; then or by events
   bool books_work = false;          // Energies::work is kept
 };
 

@@ -256,7 +256,10 @@ SceneInfo cast(const Model<D>& model, const State<D>& start, const std::vector<P
   cast.gravity = to_3d<D>(model.gravity);
   for (const Force<D>& force : model.forces)
     if (force.law == Force<D>::Law::buoyancy) cast.surface = force.level;
-  cast.forces = !model.forces.empty() || model.changed;
+  cast.forces = !model.forces.empty() ||
+                std::any_of(model.changes.begin(), model.changes.end(), [](const Change<D>& change) {
+                  return change.of == Change<D>::Of::force || change.of == Change<D>::Of::gravity;
+                });
   cast.books_work = model.books_work();
   for (const Body<D>& body : model.bodies) cast.bodies.push_back(shown(body));
   for (const Drive<D>& drive : model.drives) cast.bodies[std::size_t(drive.body)].fixed = false;

@@ -291,7 +291,6 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void apply_impulses(State<D>& state, const Row<D>& row, double p, bool places);
   void project_state(State<D>& state, double h, bool impacts_follow = false);
   void pay_for_lift(State<D>& state);
-  std::vector<Vec<D>> corrections_;  // of this step, m: see corrections(); empty: none
 
   // chain_responses.cpp
   double self_coupling(int row) const;
@@ -433,7 +432,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
   int islands_ = 0;
   std::vector<std::vector<int>> island_members_;  // of constraints_, one list an island
   Islands roots_;
-  std::vector<int> island_of_;  // one a body
+  std::vector<int> island_of_;       // one a body
+  std::vector<Vec<D>> corrections_;  // one a body, of this step, m: see corrections(); empty: none
 };
 
 // every gap below the margin, if they are near at all

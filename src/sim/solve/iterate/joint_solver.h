@@ -84,7 +84,8 @@ class JointSolver final : public System {
   /// Whether the last step() stopped a joint at its end, or a rope where it was taut, within itself: then
   /// bodies on joints have gone where no velocity of the step's ends leads.
   bool stopped() const { return stopped_; }
-  /// What that has changed of the velocity and spin of a body of bodies(), in all; where stopped().
+  /// What that has changed in all of the velocity, m/s, and spin, rad/s, of a body of bodies(); where
+  /// stopped().
   const Vec<D>& jump(int body) const { return jumps_[std::size_t(body)]; }
   const AngularVec<D>& spin_jump(int body) const { return spin_jumps_[std::size_t(body)]; }
   int components() const { return factors_.components(); }

@@ -5,9 +5,9 @@
 
 namespace obscura::sim {
 
-/// How fast bodies may become within a step by what strikes them, m/s: for whom sleepers are to wake before
-/// they would be walls. Something light leaves at up to twice the speed of what strikes it, and that at most
-/// of the fastest.
+/// How fast bodies may become within a step by what strikes them, m/s. Sleeping bodies wake that such a body
+/// may reach, as it would strike them as walls. Something light leaves at up to twice the speed of what
+/// strikes it, and no body strikes faster than the fastest.
 class StruckSpeeds {
  public:
   /// Of `bodies` bodies, that are at rest until begin() says their speeds.
