@@ -156,7 +156,7 @@ TEST(SpaceGaps, AreNoneWhileTheBodiesMoveLessThanTheirClearance) {
     const double margin = dice.between(0.01, 0.1), radii = bounding_radius(a) + bounding_radius(b);
     std::vector<ContactCandidate<3>> out;
     Clearance clearance;
-    collide(0, a, at_a, 1, b, at_b, margin, out, clearance);
+    collide(0, a, at_a, 1, b, at_b, margin, Gaps::all, out, clearance);
     if (!out.empty() || clearance.apart < margin) continue;
     ++apart, edges += clearance.per_turn > 1;
     // as far as its words go, in any direction: half of it by moving, half by turning

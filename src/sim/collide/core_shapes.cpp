@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "sim/collide/narrow_phase.h"
 #include "sim/shape/convex_polygon.h"
 #include "sim/shape/shape.h"
 
@@ -64,11 +65,11 @@ double clip(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, int f
             const Pose& at_b, bool swapped, Feature out[2]) {
   const CorePoint n = normal(cores, a, at_a, face);
   int incident = 0;
-  double least = 1e300;
+  double least = 1e300, askew = 0;
   for (int i = 0; i < b.count; ++i) {
     const CorePoint m = normal(cores, b, at_b, i);
     const double along = n.x * m.x + n.y * m.y;
-    if (along < least) least = along, incident = i;
+    if (along < least) least = along, incident = i, askew = std::fabs(n.x * m.y - n.y * m.x);
   }
 
   // along the reference face, counter-clockwise: the incident one runs backwards
@@ -96,8 +97,13 @@ double clip(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, int f
     out[0] = sb0 > sa1 ? both(a1, b0) : both(a0, b1), out[1] = {};
     return low;
   }
-  out[0] = sb0 >= sa0 ? of_b(b0) : of_a(a0);
-  out[1] = sb1 <= sa1 ? of_b(b1) : of_a(a1);
+  const bool over0 = sb0 >= sa0, over1 = sb1 <= sa1;
+  out[0] = over0 ? of_b(b0) : of_a(a0), out[1] = over1 ? of_b(b1) : of_a(a1);
+  // a corner touches alone where the faces are askew
+  if (askew > kAskew && over0 != over1 && (over0 ? gap <= other : other <= gap)) {
+    if (over1) out[0] = out[1];
+    out[1] = {};
+  }
   return low;
 }
 

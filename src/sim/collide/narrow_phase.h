@@ -166,6 +166,15 @@ template <int D>
 void collide(int a, const Shape<D>& shape_a, const BodyMotion<D>& at_a, int b, const Shape<D>& shape_b,
              const BodyMotion<D>& at_b, double margin, std::vector<ContactCandidate<D>>& out);
 
+/// The sine of the angle between two faces from which on they are askew: where a corner of the one touches the
+/// other face, what else of their overlap is askew touches nothing before they have turned. A corner that slides
+/// past the end of a face would be struck by it: within the depth of an overlap the end meets the other side of
+/// the corner.
+inline constexpr double kAskew = 0.03;
+/// Which gaps are sought: all, or of those that are askew none but the least. Of the latter, features are to be
+/// sought again before bodies have turned by half of kAskew.
+enum class Gaps { all, touching };
+
 /// How far two shapes of space stay apart along an axis that turns with them: why collide() found nothing. It
 /// finds nothing while `apart` less what they have moved since is at least its margin: by |d - d0|, d from
 /// centre to centre, and by `per_turn` (|d| + r_a + r_b) for each radian that either has turned, r their
@@ -177,9 +186,9 @@ struct Clearance {
   /// Of parts the least.
   void add(double value, double loss) { apart = std::min(apart, value), per_turn = std::max(per_turn, loss); }
 };
-/// As collide() above, and says why it has found nothing.
+/// As collide() above, of these gaps, and says why it has found nothing.
 void collide(int a, const Shape<3>& shape_a, const BodyMotion<3>& at_a, int b, const Shape<3>& shape_b,
-             const BodyMotion<3>& at_b, double margin, std::vector<ContactCandidate<3>>& out,
+             const BodyMotion<3>& at_b, double margin, Gaps sought, std::vector<ContactCandidate<3>>& out,
              Clearance& clearance);
 
 /// The gaps below `margin` between a shape and a wall, one for each vertex.

@@ -260,6 +260,16 @@ class Shared {
   // whether its gaps are what touches: the least of them is the greatest separation
   bool found() const { return least_ <= touching_.best + aligned_ && least_ >= touching_.best - aligned_; }
 
+  // Drops the gaps that are askew, but for the least.
+  void drop_askew() {
+    std::size_t kept = begin_;
+    for (std::size_t i = begin_; i < gaps_.size(); ++i) {
+      const bool least = gaps_[i].value + couple_.radii() <= least_;
+      if (least || !askew_[int(i - begin_)]) gaps_[kept++] = gaps_[i];
+    }
+    gaps_.resize(kept);
+  }
+
   // drops the gaps beyond `margin`
   void keep_near(double margin) {
     // If the shapes are apart and the faces oblique, a corner beside the partner may seem to lie over it. Its
@@ -288,16 +298,17 @@ class Shared {
     return false;
   }
 
-  // real: its nearest places lie on the features
-  void add(const Flat& at, const ContactCandidate<3>& gap, bool real) {
+  // `normal`: of the gap; real: its nearest places lie on the features
+  void add(const Flat& at, const ContactCandidate<3>& gap, const Vec<3>& normal, bool real) {
     places_.push_back(at), gaps_.push_back(gap);
+    askew_.push_back(n_.cross(normal).squaredNorm() > kAskew * kAskew);
     if (real || touching_.best <= 0) least_ = std::min(least_, gap.value + couple_.radii());
   }
 
   void corners_of_other() {
     for (int i = 0; i < its_.size(); ++i) {
       if (!within(own_, its_[i].at, aligned_) || taken(its_[i].at)) continue;
-      add(its_[i].at, touching_.other_at_base(couple_, its_[i].corner, its_[i].height), true);
+      add(its_[i].at, touching_.other_at_base(couple_, its_[i].corner, its_[i].height), n_, true);
     }
   }
 
@@ -308,7 +319,7 @@ class Shared {
       const Vec<3> place = touching_.base.corner(own_[i].corner);
       add(own_[i].at,
           touching_.base_at_other(couple_, own_[i].corner, partner_, partner_n_.dot(place - partner_origin_)),
-          touching_.best <= 0 || over(touching_.other, partner_, place, aligned_));
+          partner_n_, touching_.best <= 0 || over(touching_.other, partner_, place, aligned_));
     }
   }
 
@@ -354,7 +365,7 @@ class Shared {
       add(at,
           touching_.base_is_b ? couple_.edges(of_other, of_base, n, core)
                               : couple_.edges(of_base, of_other, -n, core),
-          true);
+          n, true);
       return;
     }
     // too nearly parallel to tell a normal: the place on the other's edge against the touching face
@@ -364,7 +375,7 @@ class Shared {
     gap.key = couple_.key(kPlaceOnEdge, touching_.base_is_b ? of_other : of_base,
                           touching_.base_is_b ? of_base : of_other);
     (touching_.base_is_b ? gap.on_a : gap.on_b) = place, gap.of_poses = true;
-    add(at, gap, false);
+    add(at, gap, n_, false);
   }
 
   const Couple& couple_;
@@ -375,6 +386,7 @@ class Shared {
   double aligned_ = 0, least_ = 1e300;
   Loop own_, its_;
   Few<Flat, 16> places_;
+  Few<char, 16> askew_;  // of its gaps
   std::vector<ContactCandidate<3>>& gaps_;
   std::size_t begin_;
 };
@@ -454,7 +466,7 @@ void nearest_features(const Couple& couple, const ReferenceFace* touching, doubl
   }
 }
 
-void solid_gaps(const Couple& couple, double margin, std::vector<ContactCandidate<3>>& out,
+void solid_gaps(const Couple& couple, double margin, Gaps sought, std::vector<ContactCandidate<3>>& out,
                 Clearance& clearance) {
   const Polyhedron &a = couple.of_a, &b = couple.of_b;
   const double far = margin + couple.radii();
@@ -497,7 +509,10 @@ void solid_gaps(const Couple& couple, double margin, std::vector<ContactCandidat
 
   Shared shared(couple, touching, out);
   if (shared.passes()) return shared.drop();
-  if (shared.found()) return shared.keep_near(margin);
+  if (shared.found()) {
+    if (sought == Gaps::touching) shared.drop_askew();
+    return shared.keep_near(margin);
+  }
   shared.drop();
   const bool edges = by_edges.value > touching.by.value;
   if (edges && (touching.best <= 0 || cross_within(a, b, by_edges.of_a, by_edges.of_b))) {
@@ -530,11 +545,11 @@ template <>
 void collide(int a, const Shape<3>& shape_a, const BodyMotion<3>& at_a, int b, const Shape<3>& shape_b,
              const BodyMotion<3>& at_b, double margin, std::vector<ContactCandidate<3>>& out) {
   Clearance clearance;
-  collide(a, shape_a, at_a, b, shape_b, at_b, margin, out, clearance);
+  collide(a, shape_a, at_a, b, shape_b, at_b, margin, Gaps::all, out, clearance);
 }
 
 void collide(int a, const Shape<3>& shape_a, const BodyMotion<3>& at_a, int b, const Shape<3>& shape_b,
-             const BodyMotion<3>& at_b, double margin, std::vector<ContactCandidate<3>>& out,
+             const BodyMotion<3>& at_b, double margin, Gaps sought, std::vector<ContactCandidate<3>>& out,
              Clearance& clearance) {
   const int digits_a = digits(shape_a), digits_b = digits(shape_b);
   const std::size_t before = out.size();
@@ -542,7 +557,7 @@ void collide(int a, const Shape<3>& shape_a, const BodyMotion<3>& at_a, int b, c
     const Polyhedron of_a(part(shape_a, i), at_a, at_b.x);
     for (int k = 0; k < parts(shape_b); ++k) {
       const Polyhedron of_b(part(shape_b, k), at_b, at_b.x);
-      solid_gaps({a, b, of_a, of_b, i, k, parts(shape_b), digits_a, digits_b}, margin, out, clearance);
+      solid_gaps({a, b, of_a, of_b, i, k, parts(shape_b), digits_a, digits_b}, margin, sought, out, clearance);
     }
   }
   if (out.size() > before && !keys_suffice(shape_a, shape_b)) {

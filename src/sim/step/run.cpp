@@ -66,6 +66,7 @@ class RunOf final : public Run {
       trouble_ = trouble;
       return *trouble_;
     }
+    keep_forces();
     return snapshot(model_, copy_, *stepper_, to, value(t));
   }
 
@@ -180,6 +181,20 @@ class RunOf final : public Run {
     constexpr std::int64_t kParts = std::int64_t(1) << 40;
     const auto part = std::int64_t(std::ceil(at.fraction * double(kParts)));
     return (rational(at.step) + rational(part, kParts)) / model_.rate;
+  }
+
+  // Between two steps what goes on touching has the force of the last whole step: the part of a step, however
+  // short, puts right all that the last has left, which is no force.
+  void keep_forces() {
+    const std::vector<Contact<D>>& known = state_.contacts;
+    std::size_t at = 0;  // both are in one order
+    for (Contact<D>& contact : copy_.contacts) {
+      if (contact.force.isZero(0)) continue;
+      for (std::size_t looked = 0; looked < known.size() && known[at].key != contact.key; ++looked)
+        at = at + 1 < known.size() ? at + 1 : 0;
+      if (known.empty() || known[at].key != contact.key) continue;
+      if (!known[at].force.isZero(0)) contact.force = known[at].force;
+    }
   }
 
   // what a program throws from within a step: nothing that the stepper keeps counts any more

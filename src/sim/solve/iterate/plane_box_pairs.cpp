@@ -11,6 +11,7 @@
 
 #include <cmath>
 
+#include "sim/collide/narrow_phase.h"
 #include "sim/math/lanes.h"
 
 namespace obscura::sim::plane {
@@ -112,8 +113,13 @@ OBSCURA_INLINE void meet_four(BoxManifold& m, int lane, const Pose* poses, const
   const auto of_incident = [&](const M& corner) __attribute__((always_inline)) {
     return (~swapped & (long long)(Feature::corner_of_b << 14)) | corner << 7 | face;
   };
-  const M word0 = choose<V>(s0 >= -ht, of_incident(b0), of_reference(a0));
-  const M word1 = choose<V>(s1 <= ht, of_incident(b1), of_reference(a1));
+  const M over0 = s0 >= -ht, over1 = s1 <= ht, nothing = M{} + (long long)(Feature::none << 14);
+  M word0 = choose<V>(over0, of_incident(b0), of_reference(a0));
+  M word1 = choose<V>(over1, of_incident(b1), of_reference(a1));
+  // a corner touches alone where the faces are askew
+  const M alone = (over0 ^ over1) & (magnitude<V>(mt) > V{} + kAskew);
+  word1 = choose<V>(alone & over0 & (gap0 <= gap1), nothing, word1);
+  word0 = choose<V>(alone & over1 & (gap1 <= gap0), nothing, word0);
 
   // beside each other: corner to corner, if they are apart at all
   const M beyond = s0 > ht, before = s1 < -ht;
@@ -122,8 +128,7 @@ OBSCURA_INLINE void meet_four(BoxManifold& m, int lane, const Pose* poses, const
   const M corners = (M{} + (long long)(Feature::corners << 14)) |
                     choose<V>(swapped, corner_i, corner_r) << 7 | choose<V>(swapped, corner_r, corner_i);
   const M first = choose<V>(apart, corners, choose<V>(word0 < word1, word0, word1));
-  const M second =
-      choose<V>(apart, M{} + (long long)(Feature::none << 14), choose<V>(word0 < word1, word1, word0));
+  const M second = choose<V>(apart, nothing, choose<V>(word0 < word1, word1, word0));
   for (int k = 0; k < Of<V>::lanes; ++k) {
     m.words[0][lane + k] = int(first[k]), m.words[1][lane + k] = int(second[k]);
   }

@@ -212,7 +212,9 @@ double SpaceIterative::find_features(int a, int b, double t, double h, std::vect
   const BodyMotion<D>& at_a = flown(a, t, h, own).stance;
   const BodyMotion<D>& at_b = flown(b, t, h, own ? own + 1 : nullptr).stance;
   gaps.clear();
-  sim::collide(a, model_.bodies[a].shape, at_a, b, model_.bodies[b].shape, at_b, pair_margin(a, b, h), gaps);
+  Clearance ignored;
+  sim::collide(a, model_.bodies[a].shape, at_a, b, model_.bodies[b].shape, at_b, pair_margin(a, b, h),
+               Gaps::touching, gaps, ignored);
   double least = 1e300;
   for (ContactCandidate<D>& gap : gaps) {
     gap.value = evaluate(gap, at_a, at_b).value;
