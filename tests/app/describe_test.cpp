@@ -191,6 +191,57 @@ TEST_F(Describe, TellsOfWhatTurns) {
   }
 }
 
+// What holds lets go: bonds break, fixed bodies are let go at a time or by an event, one is held.
+TEST_F(Describe, TellsOfBondsAndOfWhatIsLetGoAndHeld) {
+  scene(R"(duration = 1
+[room]
+size = [4, 3]
+[[box]]
+name = "left"
+size = [0.2, 0.2]
+position = [1, 1.5]
+[[box]]
+name = "right"
+size = [0.2, 0.2]
+position = [1.2, 1.5]
+[[bond]]
+of = ["left", "right"]
+breaks = 0.001
+)");
+  const Outcome bond = obscura("describe scene.toml");
+  ASSERT_EQ(bond.exit, 0) << bond.err;
+  EXPECT_THAT(bond.out, HasSubstr("one bond; gravity"));
+  EXPECT_THAT(bond.out,
+              testing::ContainsRegex("At 0\\.[0-9]* s the bond of the left and the right breaks\\."));
+
+  scene(R"(duration = 1
+[room]
+size = [4, 3]
+[[ball]]
+name = "late"
+radius = 0.1
+position = [2, 2]
+fixed = true
+release = 0.2
+[[ball]]
+name = "ball"
+radius = 0.1
+position = [3, 1]
+fixed = true
+[[when]]
+time = 0.3
+do = [{ release = "ball" }]
+[[when]]
+time = 0.4
+do = [{ set = "ball.fixed", to = true }]
+)");
+  const Outcome run = obscura("describe scene.toml");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("At 0.2 s the late is let go."));
+  EXPECT_THAT(run.out, HasSubstr("At 0.3 s the ball is let go."));
+  EXPECT_THAT(run.out, HasSubstr("At 0.4 s the ball is held where it is."));
+}
+
 // What moves bodies: a hand, an explosion. Boxes that cannot turn are boxes in every pose.
 TEST_F(Describe, TellsOfHandsAndExplosions) {
   scene(R"(duration = 2

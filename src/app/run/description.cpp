@@ -70,10 +70,11 @@ class Account {
     double fastest = 0, when_fastest = 0, highest = -1e300, when_highest = 0;
   };
   using Pair = std::tuple<int, int, int>;
+  using Told = std::vector<std::pair<double, std::string>>;  // s, sentences
   void follow_turns(const sim::Snapshot& now);
   void follow_hands(const sim::Snapshot& now);
   std::vector<std::string> beginning() const;
-  std::vector<std::pair<double, std::string>> causes() const;
+  Told causes() const;
   std::vector<std::string> events() const;
   std::vector<std::string> extremes() const;
   std::vector<std::string> ending() const;
@@ -91,11 +92,30 @@ class Account {
                : fmt::format("joint {} {}", name, parted_.contains(joint) ? "is let go" : "breaks");
   }
 
+  std::string side(int body) const { return body < 0 ? std::string("the room") : called(cast_, body); }
   // of two that an event holds together
   std::string joining(int joint) const {
     const sim::SceneInfo::Joint& it = cast_.joints[std::size_t(joint)];
-    const auto side = [&](int body) { return body < 0 ? std::string("the room") : called(cast_, body); };
     return fmt::format("{} and {} are joined", side(it.a), side(it.b));
+  }
+  std::string cracking(int bond) const {
+    const sim::SceneInfo::Bond& it = cast_.bonds[std::size_t(bond)];
+    return fmt::format("the bond of {} and {} breaks", side(it.a), side(it.b));
+  }
+  // what becomes of bodies or bonds at instants: of few each, of many how many
+  template <class Each>
+  void tell(const std::vector<std::pair<double, int>>& all, const Each& each, const std::string& many,
+            Told& told) const {
+    if (all.size() <= kToldSingly) {
+      for (const auto& [at, which] : all)
+        told.emplace_back(at, fmt::format("At {} {}.", when(at), each(which)));
+      return;
+    }
+    const auto [first, last] = std::minmax_element(all.begin(), all.end());
+    told.emplace_back(first->first, last->first > first->first
+                                        ? fmt::format("From {} to {} {} {}.", when(first->first),
+                                                      when(last->first), all.size(), many)
+                                        : fmt::format("At {} {} {}.", when(first->first), all.size(), many));
   }
 
   const scene::Scene& scene_;
@@ -112,6 +132,8 @@ class Account {
   std::vector<std::optional<double>> rest_;                         // since when
   std::vector<std::optional<double>> still_;                        // likewise, without motion that shows
   std::vector<std::pair<double, int>> broken_, made_;               // joints
+  std::vector<std::pair<double, int>> cracked_;                     // bonds
+  std::vector<std::pair<double, int>> freed_, held_still_;          // bodies
   std::set<int> parted_;                                            // of them those that conditions let go
   std::vector<std::pair<std::string, std::vector<double>>> marks_;  // by their names, in the order of time
   std::set<Pair> touching_;
@@ -199,6 +221,8 @@ void Account::read(const sim::Snapshot& now) {
   for (std::size_t i = 0; last_ && i < now.joints.size(); ++i)
     if (now.joints[i].broken != last_->joints[i].broken)
       (now.joints[i].broken ? broken_ : made_).emplace_back(now.time, int(i));
+  for (std::size_t i = 0; last_ && i < std::min(now.bonds.size(), last_->bonds.size()); ++i)
+    if (now.bonds[i] < last_->bonds[i]) cracked_.emplace_back(now.time, int(i));
   if (!first_) first_ = now;
   last_ = now;
   const sim::Energies& e = now.energies;
@@ -242,14 +266,15 @@ void Account::follow_hands(const sim::Snapshot& now) {
   }
 }
 
-// what is done to bodies: hands that pull, explosions that begin
-std::vector<std::pair<double, std::string>> Account::causes() const {
-  std::vector<std::pair<double, std::string>> told;
+// what is done to bodies: hands that pull, explosions that begin, what is let go or held
+Account::Told Account::causes() const {
+  Told told;
   for (const Grip& each : grips_) {
     if (told.size() >= kToldSingly) break;
     told.emplace_back(each.begin, fmt::format("From {} to {} a hand's spring pulls {}.", when(each.begin),
                                               when(each.end), called(cast_, each.body)));
   }
+  std::vector<std::pair<double, int>> freed = freed_;
   if (scene_.trajectory) return told;
   std::visit(
       [&](const auto& world) {
@@ -262,8 +287,16 @@ std::vector<std::pair<double, std::string>> Account::causes() const {
                             fmt::format("At {} there is an explosion at {}, which lasts {}.", when(start),
                                         whereabouts(center, cast_), when(sim::value(each.duration))));
         }
+        for (const auto& drive : world.model.drives)
+          if (drive.release && sim::value(*drive.release) <= last_->time)
+            freed.emplace_back(sim::value(*drive.release), drive.body);
       },
       scene_.world);
+  tell(
+      freed, [&](int body) { return called(cast_, body) + " is let go"; }, "bodies are let go", told);
+  tell(
+      held_still_, [&](int body) { return called(cast_, body) + " is held where it is"; },
+      "bodies are held where they are", told);
   return told;
 }
 
@@ -276,9 +309,19 @@ void Account::heed(const std::vector<sim::RunEvent>& events) {
     }
     std::visit(
         [&](const auto& world) {
-          for (const auto& action : world.model.whens[std::size_t(event.when)].actions)
-            if (action.what == std::decay_t<decltype(action)>::Do::part)
-              parted_.insert(action.of.begin(), action.of.end());
+          using When = typename std::decay_t<decltype(world.model.whens)>::value_type;
+          using Change = typename std::decay_t<decltype(world.model.changes)>::value_type;
+          const double at = sim::value(event.time);
+          for (const auto& action : world.model.whens[std::size_t(event.when)].actions) {
+            if (action.what == When::Action::Do::part) parted_.insert(action.of.begin(), action.of.end());
+            for (const int of : action.of) {
+              if (action.what == When::Action::Do::let_go)
+                freed_.emplace_back(at, world.model.drives[std::size_t(of)].body);
+              if (action.what != When::Action::Do::change) continue;
+              const Change& change = world.model.changes[std::size_t(of)];
+              if (change.of == Change::Of::hold) held_still_.emplace_back(at, change.index);
+            }
+          }
         },
         scene_.world);
   }
@@ -319,7 +362,7 @@ std::vector<std::string> Account::beginning() const {
 }
 
 std::vector<std::string> Account::events() const {
-  std::vector<std::pair<double, std::string>> told = causes();
+  Told told = causes();
   for (std::size_t i = 0; i < turning_.size(); ++i) {
     const Turning& its = turning_[i];
     if (!its.told() || told.size() >= 2 * kToldSingly) continue;
@@ -371,6 +414,8 @@ std::vector<std::string> Account::events() const {
   if (broken_.size() > kToldSingly)
     told.emplace_back(1e300, fmt::format("{} joints {}.", broken_.size(),
                                          parted_.size() >= broken_.size() ? "are let go" : "break"));
+  tell(
+      cracked_, [&](int bond) { return cracking(bond); }, "bonds break", told);
   for (std::size_t i = 0; i < made_.size() && i < kToldSingly; ++i)
     told.emplace_back(made_[i].first,
                       fmt::format("At {} {}.", when(made_[i].first), joining(made_[i].second)));
@@ -491,6 +536,7 @@ std::vector<Happening> Account::happenings() const {
                                            other(*each), numeral(each->speed))});
   for (const auto& [at, joint] : broken_) all.push_back({at, parting(joint)});
   for (const auto& [at, joint] : made_) all.push_back({at, joining(joint)});
+  for (const auto& [at, bond] : cracked_) all.push_back({at, cracking(bond)});
   return all;
 }
 

@@ -181,9 +181,11 @@ std::string listed(const sim::SceneInfo& cast) {
   if (fixed > 0) all.push_back(count(fixed, "fixed body", "fixed bodies"));
   if (!cast.springs.empty()) all.push_back(count(cast.springs.size(), "spring", "springs"));
   const auto joints =
-      std::size_t(std::count_if(cast.joints.begin(), cast.joints.end(),
-                                [](const auto& joint) { return joint.kind != sim::JointKind::wire && !joint.later; }));
+      std::size_t(std::count_if(cast.joints.begin(), cast.joints.end(), [](const auto& joint) {
+        return joint.kind != sim::JointKind::wire && !joint.later;
+      }));
   if (joints > 0) all.push_back(count(joints, "joint", "joints"));
+  if (!cast.bonds.empty()) all.push_back(count(cast.bonds.size(), "bond", "bonds"));
   if (!cast.rails.empty()) all.push_back(count(cast.rails.size(), "track", "tracks"));
   return all.empty() ? "nothing" : together(all);
 }

@@ -71,6 +71,9 @@ struct SceneInfo {
     Vec3 tooth_a = Vec3::UnitX(), tooth_b = Vec3::UnitX();  // of a gear, in the bodies' frames
     Vec3 start = Vec3::Zero();                              // from its a to its b at the start of the run, m
   };
+  struct Bond {
+    int a = -1, b = -1;  // bodies; b = -1: the room
+  };
   struct Mouse {
     double press = 0, release = 0;  // s
     double rest_length = 0;
@@ -85,6 +88,7 @@ struct SceneInfo {
   std::vector<Spring> springs;
   std::vector<Mouse> mice;
   std::vector<Joint> joints;
+  std::vector<Bond> bonds = {};
   std::vector<Rail> rails;
   std::optional<double> surface{};  // the y of a fluid's, m
   bool forces = false;              // beside gravity, drag, springs and explosions; then or by events
@@ -165,6 +169,7 @@ struct Snapshot {
   std::vector<Mouse> mice;
   std::vector<Joint> joints;
   std::vector<Contact> contacts;
+  std::vector<char> bonds = {};  // whether each is whole
   Energies energies;
   std::vector<double> masses = {};       // of bodies now, kg; none: as at the start
   std::optional<Vec3> gravity = {};      // of the room now, m/s^2; none: as at the start

@@ -254,6 +254,7 @@ SceneInfo cast(const Model<D>& model, const State<D>& start, const std::vector<P
   cast.dimension = D;
   cast.scale = model.scale;
   cast.gravity = to_3d<D>(model.gravity);
+  for (const Bond<D>& bond : model.bonds) cast.bonds.push_back({bond.a, bond.b});
   for (const Force<D>& force : model.forces)
     if (force.law == Force<D>::Law::buoyancy) cast.surface = force.level;
   cast.forces = !model.forces.empty() ||
@@ -323,7 +324,7 @@ Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>
   Snapshot now;
   now.gravity = to_3d<D>(stepper.model(state).gravity);
   now.time = t;
-  now.step = state.step;
+  now.step = state.step, now.bonds = state.intact;
   if (std::any_of(scene.changes.begin(), scene.changes.end(),
                   [](const Change<D>& it) { return it.of == Change<D>::Of::mass; }))
     for (const Body<D>& body : model.bodies) now.masses.push_back(body.mass);

@@ -123,7 +123,14 @@ void SpaceIterative::correct_overlaps(StepPart<D> part) {
     for (int i = begin; i < end; ++i) {
       if (inactive_[i]) continue;
       state.x[i] += moving_[i].v, corrections_[i] += moving_[i].v;
-      if (const int k = turning(state, i); k >= 0) state.turn[k] = turned<D>(state.turn[k], moving_[i].w);
+      const int k = turning(state, i);
+      if (k < 0 || moving_[i].w.isZero(0)) continue;
+      const Orientation<D> before = state.turn[k];
+      state.turn[k] = turned<D>(before, moving_[i].w);
+      if (!wobbles<D>(model_.bodies[i].inertia)) continue;
+      // its spin goes along: its energy is the same about axes that have turned with it
+      const AngularVec<D> own = from_room<D>(rotation<D>(before), state.spin[k]);
+      kept_[i].w = state.spin[k] = to_room<D>(rotation<D>(state.turn[k]), own);
     }
   });
   moving_.swap(kept_);
