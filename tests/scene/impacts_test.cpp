@@ -477,6 +477,30 @@ TEST(Impacts, ACornerThatSlidesOffMeetsNothing) {
   }
 }
 
+// Just after a step a contact has the force of that step, not what puts right its errors within next to no
+// time (once 1,600 times as much here).
+TEST(Impacts, ForcesBetweenStepsAreThoseOfTheLast) {
+  for (const Manner& manner : kManners) {
+    const TextRun run(
+        empty_room(manner, 2) +
+        "rate = 600\n"
+        "[[box]]\nsize = [0.33, 0.26]\nposition = [0, 0.14]\nangle = 30\nvelocity = [1.91, -0.44]\n"
+        "mass = 1\nelasticity = 0\nfriction = 0\n"
+        "[[box]]\nsize = [0.29, 0.25]\nposition = [0.6, 0.02]\nangle = 5\nspin = -45\n"
+        "velocity = [-0.49, -0.07]\nmass = 1\nelasticity = 0\nfriction = 0\n");
+    const auto force = [&](double t) {
+      sim::Vec3 sum = sim::Vec3::Zero();
+      for (const sim::Snapshot::Contact& contact : run.at(t).contacts) sum += contact.force;
+      return sum;
+    };
+    SCOPED_TRACE(manner.name);
+    const sim::Vec3 whole = force(0.15);
+    EXPECT_GT(whole.norm(), 0.5);
+    EXPECT_LT((force(0.150001) - whole).norm(), 0.02 * whole.norm());
+    EXPECT_LT((force(0.1515) - whole).norm(), 0.1 * whole.norm());
+  }
+}
+
 // A ball that bounces on what lies at rest, one block or two, loses what e takes and nothing for the step in
 // which it strikes: the block under it does not fall before it is struck.
 TEST(Impacts, WhatLiesAtRestIsStruckAtRest) {
