@@ -123,7 +123,7 @@ std::vector<Key> world_rows() {
        .doc = "Steps per second.", .example = "1000"},
       {.path = "physics.integrator", .form = choice, .fallback = "\"rk4\"",
        .choices = {"rk4", "midpoint", "euler", "semi-implicit"},
-       .doc = "The integration scheme; the orders are four, two, one and one.", .example = "\"midpoint\""},
+       .doc = "The integration scheme; the orders are four, two, one and one. With joints or springs the iterative solver takes substeps of 1/240 s at most: there errors follow `rate` only above that.", .example = "\"midpoint\""},
       {.path = "physics.collision", .form = choice, .fallback = "\"contact\"",
        .choices = {"contact", "event", "handout"},
        .doc = "How collisions are treated. `contact`: forces keep bodies apart, with friction; `event`: the same, with every "
@@ -379,7 +379,7 @@ std::vector<Key> world_rows() {
       {.path = "track.z", .form = expression, .unit = "m", .absent = "`points` are given", .dimension = 3, .doc = "The same of z, in space.", .example = "\"0.1*s\""},
       {.path = "track.from", .form = expression, .absent = "`points` are given", .doc = "The first value of s.", .example = "0"},
       {.path = "track.to", .form = expression, .absent = "`points` are given", .doc = "The last value of s. It is closed if it goes on there as at the first.", .example = "\"2*pi\""},
-      {.path = "track.side", .form = choice, .absent = "`left`; of a track with a `thread`, none", .dimension = 2, .instead = "in space a track is touched from all sides", .choices = {"left", "right", "both"},
+      {.path = "track.side", .form = choice, .absent = "`left`; of a track with a `thread`, none", .dimension = 2, .instead = "a track is touched from all sides", .choices = {"left", "right", "both"},
        .doc = "The side that is rolled on, seen along the track. From the other side all pass.", .example = "\"both\""},
       {.path = "track.friction", .form = number, .absent = "the body's own value", .range = kNotNegative,
        .doc = "Its friction, also on a bead. If given, the geometric mean with that of the body is used.", .example = "0"},

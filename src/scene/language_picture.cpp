@@ -151,7 +151,7 @@ std::vector<Key> picture_rows() {
        .example = "[{ time = 2, speed = 0.1 }]"},
       {.path = "film.speed.time", .form = moment, .unit = "s", .range = {0, 1e6}, .required = true, .doc = "Time of the key, in the run.",
        .example = "2"},
-      {.path = "film.speed.speed", .form = rational, .fallback = "1", .range = kSpeeds, .doc = "The speed there.", .example = "0.1"},
+      {.path = "film.speed.speed", .form = rational, .fallback = "1", .range = kSpeeds, .doc = "The speed there; of a key with `freeze` alone that of the keys around it.", .example = "0.1"},
       {.path = "film.speed.ease", .form = choice, .fallback = "\"in-out\"",
        .choices = {"linear", "in", "out", "in-out", "hold"}, .doc = "How the speed changes from the key before to this one, over the film's time; `hold`: at once.",
        .example = "\"linear\""},

@@ -359,6 +359,23 @@ TEST_F(Checkpoints, GoOnToTheSameStatesAndFrames) {
   EXPECT_NE(late.err.find("is of t = 5 s"), std::string::npos) << late.err;
 }
 
+// after an event that is no whole step, in every mode
+TEST_F(Checkpoints, AfterAnEventWithinAStepGoOnToo) {
+  for (const char* const mode : {"contact", "event"}) {
+    scene(std::string("duration = 0.6\n[room]\nsize = [6, 4]\n[physics]\ncollision = \"") + mode +
+          "\"\n[[particle]]\nname = \"a\"\nposition = [2, 2.5]\n[[when]]\ntime = 0.333\n"
+          "do = [{ set = \"a.velocity\", to = [1, 1] }]\n");
+    const Outcome film =
+        obscura(std::string("render scene.toml -o film.mp4 --checkpoint-every 0.5") + kSmallest);
+    ASSERT_EQ(film.exit, 0) << film.err;
+    const Outcome on = obscura(
+        "states scene.toml --at 0.6 --from-checkpoint film.mp4.checkpoints/0.5.checkpoint --set "
+        "physics.rate=120");
+    ASSERT_EQ(on.exit, 0) << mode << ": " << on.err;
+    EXPECT_EQ(on.out, obscura("states scene.toml --at 0.6 --set physics.rate=120").out) << mode;
+  }
+}
+
 TEST_F(Checkpoints, ThatAreDamagedOrForeignAreRefusedWithTheReason) {
   scene(kRoom);
   ASSERT_EQ(obscura(std::string("render scene.toml -o film.mp4 --checkpoint-every 1 --to 3") + kSmall).exit,

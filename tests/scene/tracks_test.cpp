@@ -223,6 +223,41 @@ TEST(Wire, WhatCrossesItselfIsFollowed) {
   }
 }
 
+// A bead leaves an open end there and then, in every mode and at every rate, from a bend along its tangent,
+// and from a rubbing slope of 1 in 2 with g (sin - mu cos) behind it.
+TEST(Wire, ABeadLeavesAnOpenEndAtItsTime) {
+  for (const std::string& mode : kTrackModes) {
+    for (const int dimension : {2, 3}) {
+      const std::string z = dimension == 2 ? "" : ", 0";
+      for (const char* const rate : {"37", "100", "600"}) {
+        SCOPED_TRACE(mode + " " + rate + " " + std::to_string(dimension));
+        const std::vector<std::string> set = {std::string("physics.rate=") + rate};
+        TextRun bend(
+            open_room(mode, dimension == 2 ? "gravity = [0, 0]" : "gravity = [0, 0, 0]", dimension) +
+                "[[track]]\nx = \"cos(s)\"\ny = \"sin(s)\"\n" + (dimension == 2 ? "" : "z = \"0\"\n") +
+                "from = 0\nto = \"pi\"\nthread = \"bead\"\nends = \"free\"\nfriction = 0\n[[particle]]\n"
+                "name = \"bead\"\nposition = [1, 0" +
+                z + "]\nvelocity = [0, 3" + z + "]\n",
+            set);
+        const auto flies = moving(bend.at(1.8), bend, "bead");
+        EXPECT_NEAR((flies.position - sim::Vec3(-1, -3 * (1.8 - kHalfTurn / 3), 0)).norm(), 0, 3e-8);
+        EXPECT_NEAR((flies.velocity - sim::Vec3(0, -3, 0)).norm(), 0, 3e-8);
+
+        TextRun slope(open_room(mode, "", dimension) + "[[track]]\npoints = [[-2, 1" + z + "], [0, 0" + z +
+                          "]]\nthread = \"bead\"\nends = \"free\"\nfriction = 0.2\n[[particle]]\n"
+                          "friction = 0.2\nname = \"bead\"\nposition = [-2, 1" +
+                          z + "]\n",
+                      set);
+        const double root5 = std::sqrt(5), a = kTrackG * (1 - 0.2 * 2) / root5, v = std::sqrt(2 * a * root5),
+                     past = 1.5 - v / a;
+        const sim::Vec3 begun = v / root5 * sim::Vec3(2, -1, 0);
+        EXPECT_NEAR((slope.place(1.5) - past * begun - sim::Vec3(0, -0.5 * kTrackG * past * past, 0)).norm(),
+                    0, 1e-9);
+      }
+    }
+  }
+}
+
 // A helix is a slope that is wound up: s = g sin(a) t^2 / 2 along it.
 TEST(Wire, AHelixIsASlope) {
   for (const std::string& mode : kTrackModes) {

@@ -349,7 +349,10 @@ std::optional<Trouble> Events<D>::advance(State<D>& state, double to) {
       change(state, actions, stamp);
       from = cut_at;
     }
-    if (cut) continue;
+    if (cut) {
+      if (from < to) state.beyond = 0;
+      continue;
+    }
     note_truths(state, from, end);
     if (end < to) state.beyond = 0;
     from = end;

@@ -291,7 +291,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
     if (chosen && spent < most_cuts && tiny <= kStuck) {
       if (progress_.released) release_contact();
       record_forces(state);
-      if (event_mode && break_loaded(state, done)) continue;
+      if (break_loaded(state, done)) continue;
       if (coming_apart()) project_state(state, 0);
       // at the friction limit nothing slips: as an equality it is sticking
       interval_.modes = modes_, interval_.loads = loads();

@@ -379,6 +379,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   AngularVec<D> wire_pose(int joint) const;
   void follow_wires(const State<D>& state);
   bool rub(int round);
+  void leave_wires(State<D>& state);
   void let_go_of_wires(State<D>& state);
 
   // whether a contact has more friction at hand than where it slips

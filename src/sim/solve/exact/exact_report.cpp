@@ -135,13 +135,15 @@ void ExactSolver<D>::note_motion(const State<D>& state, double begun, double end
   }
 }
 
-// under `event`: takes away joints that are loaded beyond their strength at this instant; whether there are
-// any
+// takes away wires whose beads leave them at this instant and, under `event`, joints that are loaded beyond
+// their strength; whether there are any
 template <int D>
 bool ExactSolver<D>::break_loaded(State<D>& state, double done) {
   scratch_.unheld.clear();
+  if (limits_.wires) leave_wires(state);
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
+    if (model_.collision != Collision::event) break;
     if (state.broken[i] || !moves(joint) || !overloaded(joint, outcome_.joint_loads[i])) continue;
     state.broken[i] = 1;
     joint.each_body([&](int body) {

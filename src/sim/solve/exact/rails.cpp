@@ -41,6 +41,19 @@ double radius_of(const ContactCandidate<D>& gap) {
   return std::max(gap.radius_a, gap.radius_b);
 }
 
+// whether a bead has come to an open end that lets go, and goes on; `slack`: so near to it, m
+template <int D>
+bool leaves(const Joint<D>& wire, const WirePlace<D>& bead, double slack) {
+  if (!wire.lets_go || bead.speed == 0) return false;
+  const Curve<D>& curve = *wire.curve;
+  const bool forward = bead.speed > 0;
+  if (curve.next(bead.foot.piece, forward)) return false;
+  const double past = curve.beyond(bead.foot);
+  if (past != 0) return (past > 0) == forward;
+  const auto& run = curve.piece(bead.foot.piece);
+  return forward ? bead.foot.along > run.start + run.length - slack : bead.foot.along < run.start + slack;
+}
+
 }  // namespace
 
 // gaps of rails below the margin, onto scratch_.on_rails
@@ -330,8 +343,8 @@ double ExactSolver<D>::passing_time(const State<D>& state, double h) {
         const BodyMotion<D>& b = joint.b.body < 0 ? room : poses_[joint.b.body];
         const auto foot = wire_place<D>({joint, poses_[joint.a.body], b, turn}).foot;
         const double past = joint.curve->beyond(foot);
-        // open ends are limits
-        return past != 0 && !joint.curve->next(foot.piece, past > 0) ? 0 : past;
+        // open ends are limits, or let go
+        return past != 0 && !joint.lets_go && !joint.curve->next(foot.piece, past > 0) ? 0 : past;
       });
       restore_pose(joint.a.body), restore_pose(joint.b.body);
     }
@@ -411,6 +424,22 @@ bool ExactSolver<D>::rub(int round) {
   return changed;
 }
 
+// those beads that leave at this instant, of the bodies at hand
+template <int D>
+void ExactSolver<D>::leave_wires(State<D>& state) {
+  static const BodyMotion<D> room;
+  for (const int i : active_.joints) {
+    const Joint<D>& joint = model_.joints[std::size_t(i)];
+    if (joint.kind != JointKind::wire || !joint.lets_go || state.broken[std::size_t(i)]) continue;
+    const BodyMotion<D>&a = poses_[joint.a.body], &b = joint.b.body < 0 ? room : poses_[joint.b.body];
+    if (!leaves(joint, wire_place<D>({joint, a, b, wire_pose(i)}), limits_.touching_gap)) continue;
+    state.broken[std::size_t(i)] = 1;
+    joint.each_body([&](int body) {
+      if (body >= 0) scratch_.unheld.push_back(body);
+    });
+  }
+}
+
 // beads that have come to an open end that lets go are free from the next step on
 template <int D>
 void ExactSolver<D>::let_go_of_wires(State<D>& state) {
@@ -437,6 +466,7 @@ void ExactSolver<D>::let_go_of_wires(State<D>& state) {
   template double ExactSolver<D>::passing_time(const State<D>&, double);                       \
   template AngularVec<D> ExactSolver<D>::wire_pose(int) const;                                 \
   template void ExactSolver<D>::follow_wires(const State<D>&);                                 \
+  template void ExactSolver<D>::leave_wires(State<D>&);                                        \
   template bool ExactSolver<D>::rub(int);                                                      \
   template void ExactSolver<D>::let_go_of_wires(State<D>&)
 OBSCURA_INSTANTIATE(2);
