@@ -221,9 +221,14 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& 
   return false;
 }
 
+// up to which gap the touches of a pair are closed, m
+double Impacts::closed_gap(const Pair& pair, const PlacedPair& at, double far) {
+  return together(far, pair.touches > 1 ? std::min(at.rows[0].gap, at.rows[1].gap) : at.rows[0].gap);
+}
+
 // Touch k of an impact where its row stands; whether it is closed.
-bool Impacts::place_touch(const TouchRow& r, double far, int k, Impact& impact) {
-  impact.gap[k] = r.gap, impact.met[k] = r.gap <= kTogether * far;
+bool Impacts::place_touch(const TouchRow& r, double together, int k, Impact& impact) {
+  impact.gap[k] = r.gap, impact.met[k] = r.gap <= together;
   // what meets is pushed in one point, so that angular momentum stays; what is to come together yet is
   // rubbed where it is touched
   const double apart = impact.met[k] ? 0 : 0.5 * r.gap;
@@ -243,7 +248,7 @@ bool Impacts::find_impact(const Pair& pair, Impact& impact, const ContactBatch& 
   bool any = false;
   for (int k = 0; k < pair.touches; ++k) {
     const TouchRow& r = at.rows[k];
-    place_touch(r, g.far[lane], k, impact);
+    place_touch(r, closed_gap(pair, at, g.far[lane]), k, impact);
     const double vn = normal_speed(r, at.a, at.b);
     if (impact.met[k]) impact.speed = std::max(impact.speed, -vn);
     any = any || (impact.met[k] && vn < g.impact_speed[lane]);

@@ -116,7 +116,8 @@ class Impacts {
   static bool outdated(const Pair& pair, const int (&words)[2], const ContactBatch& by);
   PlacedPair placed_renewed(const Pair& pair, const int (&words)[2], double when, const Step& step);
   bool find_meeting(const Pair& pair, const ContactBatch& batches, PlacedPair& at, const Step& step);
-  static bool place_touch(const TouchRow& r, double far, int k, Impact& impact);
+  static double closed_gap(const Pair& pair, const PlacedPair& at, double far);
+  static bool place_touch(const TouchRow& r, double together, int k, Impact& impact);
   bool find_impact(const Pair& pair, Impact& impact, const ContactBatch& batches, const Step& step);
   int rounds(const Pair& pair) const { return rounds_[pair.a] + (pair.b < 0 ? 0 : rounds_[pair.b]); }
   void look_at(int pair);

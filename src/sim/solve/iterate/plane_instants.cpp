@@ -51,7 +51,7 @@ bool Impacts::meets_at(const Pair& pair, double when, const ContactBatch& g, con
   meeting.impact.when = when, meeting.impact.renewed = at.renewed;
   bool any = false;
   for (int k = 0; k < pair.touches; ++k) {
-    if (!place_touch(at.rows[k], g.far[lane], k, meeting.impact)) continue;
+    if (!place_touch(at.rows[k], closed_gap(pair, at, g.far[lane]), k, meeting.impact)) continue;
     any = true;
     meeting.impact.speed = std::max(meeting.impact.speed, -normal_speed(at.rows[k], at.a, at.b));
   }

@@ -181,6 +181,7 @@ class SpaceIterative final : public Iterative<3> {
   void find_turned_pairs(double h);
   void restore_features();
   bool has_nearest_features(const ImpactQueue::Due& due, double h);
+  bool closed(int touch, double bounding_radius, double t, double h) const;
   bool gather_impact(int touch, double t, double h);
   void gather_ends(double t, double h);
   void begin_rows(int contacts);

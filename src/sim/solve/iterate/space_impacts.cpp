@@ -18,6 +18,21 @@
 
 namespace obscura::sim {
 
+// whether a gap is closed at a time, up to what its pair overlaps
+bool SpaceIterative::closed(int touch, double bounding_radius, double t, double h) const {
+  if (reach_[touch].least(t) > together(bounding_radius, -bounding_radius)) return false;
+  const double gap = instant(touch, t, h).now.value;
+  if (gap <= kTogether * bounding_radius) return true;
+  const auto beside = [&](int i) {
+    return touches_[i].a == touches_[touch].a && touches_[i].b == touches_[touch].b;
+  };
+  double least = gap;
+  for (int i = touch; i-- > 0 && beside(i);) least = std::min(least, instant(i, t, h).now.value);
+  for (int i = touch + 1; i < int(touches_.size()) && beside(i); ++i)
+    least = std::min(least, instant(i, t, h).now.value);
+  return gap <= together(bounding_radius, least);
+}
+
 // what meets with a gap at a time, through gaps that are closed: those of its pair alone, if pairs are struck
 // one after another; false where that is not for here
 bool SpaceIterative::gather_impact(int first, double t, double h) {
@@ -33,8 +48,7 @@ bool SpaceIterative::gather_impact(int first, double t, double h) {
           const ContactKey& key = touches_[other].key;
           if (alone && (key.a != pair.a || key.b != pair.b)) continue;
           if (std::find(meets_.begin(), meets_.end(), other) != meets_.end()) continue;
-          const double together = kTogether * bounding_radius_[body];
-          if (reach_[other].least(t) > together || instant(other, t, h).now.value > together) continue;
+          if (!closed(other, bounding_radius_[body], t, h)) continue;
           few = int(meets_.size()) < InstantImpact<D>::kMost;
           if (few) meets_.push_back(other);
         }

@@ -76,6 +76,12 @@ inline constexpr int kFewSolved = 24, kSolvedSystems = 20;
 inline constexpr double kInTime = 1e-9;
 /// Gaps up to this, of a bounding radius, take part in an impact of the same instant.
 inline constexpr double kTogether = 1e-6;
+/// The same of a pair that overlaps, m. The overlap is an error, but for a deep one, and so is a gap some times
+/// as wide on the other side of faces that come to lie on each other. `least_gap` of the pair, m.
+inline double together(double bounding_radius, double least_gap) {
+  constexpr double kErrors = 4, kDeep = 1e-2;
+  return bounding_radius * std::clamp(kErrors * -least_gap / bounding_radius, kTogether, kDeep);
+}
 
 /// The closing rate that says how many substeps a step has, 1/s: of many contact points the largest but for a
 /// two-hundredth of them, which may close twice as fast, so that a heap of a thousand is not divided as
