@@ -223,7 +223,7 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& 
 
 // up to which gap the touches of a pair are closed, m
 double Impacts::closed_gap(const Pair& pair, const PlacedPair& at, double far) {
-  return together(far, pair.touches > 1 ? std::min(at.rows[0].gap, at.rows[1].gap) : at.rows[0].gap);
+  return closed_up_to(far, pair.touches > 1 ? std::min(at.rows[0].gap, at.rows[1].gap) : at.rows[0].gap);
 }
 
 // Touch k of an impact where its row stands; whether it is closed.

@@ -20,7 +20,7 @@ namespace obscura::sim {
 
 // whether a gap is closed at a time, up to what its pair overlaps
 bool SpaceIterative::closed(int touch, double bounding_radius, double t, double h) const {
-  if (reach_[touch].least(t) > together(bounding_radius, -bounding_radius)) return false;
+  if (reach_[touch].least(t) > closed_up_to(bounding_radius, -bounding_radius)) return false;
   const double gap = instant(touch, t, h).now.value;
   if (gap <= kTogether * bounding_radius) return true;
   const auto beside = [&](int i) {
@@ -30,7 +30,7 @@ bool SpaceIterative::closed(int touch, double bounding_radius, double t, double 
   for (int i = touch; i-- > 0 && beside(i);) least = std::min(least, instant(i, t, h).now.value);
   for (int i = touch + 1; i < int(touches_.size()) && beside(i); ++i)
     least = std::min(least, instant(i, t, h).now.value);
-  return gap <= together(bounding_radius, least);
+  return gap <= closed_up_to(bounding_radius, least);
 }
 
 // what meets with a gap at a time, through gaps that are closed: those of its pair alone, if pairs are struck

@@ -78,7 +78,7 @@ inline constexpr double kInTime = 1e-9;
 inline constexpr double kTogether = 1e-6;
 /// The same of a pair that overlaps, m. The overlap is an error, but for a deep one, and so is a gap some times
 /// as wide on the other side of faces that come to lie on each other. `least_gap` of the pair, m.
-inline double together(double bounding_radius, double least_gap) {
+inline double closed_up_to(double bounding_radius, double least_gap) {
   constexpr double kErrors = 4, kDeep = 1e-2;
   return bounding_radius * std::clamp(kErrors * -least_gap / bounding_radius, kTogether, kDeep);
 }
