@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -417,56 +418,98 @@ TEST(Impacts, ARopeThatSnapsTautBesideAContactDoesNotRebound) {
   }
 }
 
+/// A box that does not bounce, and how it moves. `turn`: its angle, in space about x, y and z, degrees.
+struct ClayBox {
+  std::vector<double> size, position, turn, spin, velocity;
+  double mass = 1;
+
+  /// Mirrored at the plane x = 0: a turn about x goes on, others go the other way.
+  ClayBox mirrored() const {
+    ClayBox it = *this;
+    it.position[0] = -it.position[0], it.velocity[0] = -it.velocity[0];
+    for (std::vector<double>* angles : {&it.turn, &it.spin})
+      for (std::size_t i = angles->size() == 1 ? 0 : 1; i < angles->size(); ++i) (*angles)[i] = -(*angles)[i];
+    return it;
+  }
+  std::string text(double friction) const {
+    const auto list = [](const std::vector<double>& of) {
+      return of.size() == 1 ? fmt::format("{}", of[0]) : fmt::format("[{}]", fmt::join(of, ", "));
+    };
+    return fmt::format(
+        "[[box]]\nsize = {}\nposition = {}\n{} = {}\nspin = {}\nvelocity = {}\nmass = {}\nelasticity = 0\n"
+        "friction = {}\n",
+        list(size), list(position), size.size() == 2 ? "angle" : "orientation", list(turn), list(spin),
+        list(velocity), mass, friction);
+  }
+};
+using ClayPair = std::array<ClayBox, 2>;
+
+// one corner slides along the other box and past its end
+const ClayPair kSlideOff = {{{{0.33, 0.26}, {0, 0.14}, {30}, {0}, {1.91, -0.44}, 1},
+                             {{0.29, 0.25}, {0.6, 0.02}, {5}, {-45}, {-0.49, -0.07}, 1}}};
+const ClayPair kSlideOffInSpace = {{{{0.337, 0.353, 0.381},
+                                     {-0.3, 2.928, 0.041},
+                                     {36.4, 33.5, 6.56},
+                                     {-99, -27, 148},
+                                     {1.86, -0.4, -0.18},
+                                     2.87},
+                                    {{0.242, 0.263, 0.382},
+                                     {0.3, 2.951, -0.022},
+                                     {11.5, 27.5, -0.71},
+                                     {-126, 22, -139},
+                                     {-0.51, -0.41, -0.31},
+                                     2.17}}};
+// they slide on an edge until faces come to lie on each other
+const ClayPair kComeToLie = {{{{0.357, 0.3041, 0.3023},
+                               {-0.3, 2.9681, 0.149},
+                               {-18.9572, -31.6566, -21.5029},
+                               {-71.8688, -51.7899, -69.6267},
+                               {1.5157, -0.3924, -0.1745},
+                               1.14},
+                              {{0.2403, 0.2142, 0.2405},
+                               {0.3, 3.0127, -0.0334},
+                               {21.0124, 27.2754, -7.7006},
+                               {-120.1925, 68.3985, 76.6989},
+                               {-0.3738, -0.1039, 0.1583},
+                               1.107}}};
+const ClayPair kComeToLieRubbing = {{{{0.2047, 0.3931, 0.2572},
+                                      {-0.3, 3.0427, -0.0952},
+                                      {-12.1113, 19.1476, 38.5826},
+                                      {-54.0509, -89.1588, -129.546},
+                                      {1.3356, -0.0087, -0.1793},
+                                      0.376},
+                                     {{0.3132, 0.33, 0.3309},
+                                      {0.3, 3.0737, -0.0654},
+                                      {-33.6294, 18.1922, 9.5724},
+                                      {28.4097, -137.6122, -119.4235},
+                                      {-0.8519, 0.2649, -0.3736},
+                                      1.36}}};
+
+// such a pair alone
+TextRun clay(const ClayPair& pair, const Manner& manner, int rate, double friction) {
+  return TextRun(empty_room(manner, int(pair[0].size.size())) + fmt::format("rate = {}\n", rate) +
+                 pair[0].text(friction) + pair[1].text(friction));
+}
+
 // Clay boxes meet, and a corner of one slides along the other and past its end: it meets nothing there, as it
 // goes along the face. The end once struck the other side of the corner within the depth of the overlap that
 // iterations leave (a tenth of the energy, at every rate). The iterations lose energy of first order while it
 // slides, at 60 and 240 steps a second alike: those are their substeps.
 TEST(Impacts, ACornerThatSlidesOffMeetsNothing) {
-  const auto box = [](int dimension, double side, std::vector<double> size, std::vector<double> at,
-                      std::vector<double> turn, std::vector<double> spin, std::vector<double> v,
-                      double mass) {
-    const auto list = [](const std::vector<double>& of) { return fmt::format("[{}]", fmt::join(of, ", ")); };
-    at[0] *= side, v[0] *= side;
-    // mirrored at the plane x = 0: a turn about x goes on, others go the other way
-    for (std::vector<double>* angles : {&turn, &spin})
-      for (std::size_t i = dimension == 2 ? 0 : 1; i < angles->size(); ++i) (*angles)[i] *= side;
-    const std::string angles = dimension == 2
-                                   ? fmt::format("angle = {}\nspin = {}\n", turn[0], spin[0])
-                                   : fmt::format("orientation = {{ axis = {}, angle = {} }}\nspin = {}\n",
-                                                 list({turn[0], turn[1], turn[2]}),
-                                                 std::hypot(turn[0], turn[1], turn[2]), list(spin));
-    return fmt::format("[[box]]\nsize = {}\nposition = {}\n{}velocity = {}\nmass = {}\nelasticity = 0\n",
-                       list(size), list(at), angles, list(v), mass);
-  };
-  for (const int dimension : {2, 3}) {
-    for (const double friction : {0.0, 0.3}) {
-      for (const double side : {1.0, -1.0}) {
-        const auto scene = [&](const Manner& manner, int rate) {
-          std::string text = empty_room(manner, dimension) + fmt::format("rate = {}\n", rate);
-          if (dimension == 2) {
-            text += box(2, side, {0.33, 0.26}, {0, 0.14}, {30}, {0}, {1.91, -0.44}, 1) +
-                    fmt::format("friction = {}\n", friction) +
-                    box(2, side, {0.29, 0.25}, {0.6, 0.02}, {5}, {-45}, {-0.49, -0.07}, 1);
-          } else {
-            text += box(3, side, {0.337, 0.353, 0.381}, {-0.3, -0.072, 0.041}, {40, 31, 14}, {-99, -27, 148},
-                        {1.86, -0.4, -0.18}, 2.87) +
-                    fmt::format("friction = {}\n", friction) +
-                    box(3, side, {0.242, 0.263, 0.382}, {0.3, -0.049, -0.022}, {12, 27, -3}, {-126, 22, -139},
-                        {-0.51, -0.41, -0.31}, 2.17);
-          }
-          return text + fmt::format("friction = {}\n", friction);
-        };
+  for (const ClayPair& drawn : {kSlideOff, kSlideOffInSpace}) {
+    for (const ClayPair& pair : {drawn, ClayPair{{drawn[0].mirrored(), drawn[1].mirrored()}}}) {
+      for (const double friction : {0.0, 0.3}) {
         const auto energy = [&](const Manner& manner, int rate) {
-          return TextRun(scene(manner, rate)).at(1).energies.total();
+          return clay(pair, manner, rate, friction).at(1).energies.total();
         };
         const double exact = energy(kManners[1], 600);
         SCOPED_TRACE(
-            fmt::format("{}D, friction {}, {}", dimension, friction, side > 0 ? "as is" : "mirrored"));
+            fmt::format("{}D, friction {}, velocity {}", pair[0].size.size(), friction, pair[0].velocity[0]));
         EXPECT_NEAR(energy(kManners[0], 600), exact, 1e-3 * exact);
         EXPECT_NEAR(energy(kManners[2], 60), exact, 2e-2 * exact);
         EXPECT_NEAR(energy(kManners[2], 1920), exact, 3e-3 * exact);
         // what pushes them apart turns them, and gives nothing
-        const TextRun run(scene(kManners[2], 600));
+        const TextRun run = clay(pair, kManners[2], 600, friction);
         double last = 1e300;
         for (int i = 0; i <= 60; ++i) {
           const double now = run.at(i / 60.0).energies.total();
@@ -482,59 +525,15 @@ TEST(Impacts, ACornerThatSlidesOffMeetsNothing) {
 // corners of these meet at once, though overlaps that iterations leave let them close one after another (a
 // fiftieth of the energy, at every rate).
 TEST(Impacts, FacesThatComeToLieOnEachOtherMeetAtOnce) {
-  const std::string smooth = R"([[box]]
-name = "a"
-size = [0.3570, 0.3041, 0.3023]
-position = [-0.3000, 2.9681, 0.1490]
-orientation = [-18.9572, -31.6566, -21.5029]
-spin = [-71.8688, -51.7899, -69.6267]
-velocity = [1.5157, -0.3924, -0.1745]
-mass = 1.140
-elasticity = 0.000
-friction = 0.000
-[[box]]
-name = "b"
-size = [0.2403, 0.2142, 0.2405]
-position = [0.3000, 3.0127, -0.0334]
-orientation = [21.0124, 27.2754, -7.7006]
-spin = [-120.1925, 68.3985, 76.6989]
-velocity = [-0.3738, -0.1039, 0.1583]
-mass = 1.107
-elasticity = 0.000
-friction = 0.000
-)",
-                    rough = R"([[box]]
-name = "a"
-size = [0.2047, 0.3931, 0.2572]
-position = [-0.3000, 3.0427, -0.0952]
-orientation = [-12.1113, 19.1476, 38.5826]
-spin = [-54.0509, -89.1588, -129.5460]
-velocity = [1.3356, -0.0087, -0.1793]
-mass = 0.376
-elasticity = 0.000
-friction = 0.300
-[[box]]
-name = "b"
-size = [0.3132, 0.3300, 0.3309]
-position = [0.3000, 3.0737, -0.0654]
-orientation = [-33.6294, 18.1922, 9.5724]
-spin = [28.4097, -137.6122, -119.4235]
-velocity = [-0.8519, 0.2649, -0.3736]
-mass = 1.360
-elasticity = 0.000
-friction = 0.300
-)";
-  for (const std::string& boxes : {smooth, rough}) {
-    const auto energy = [&](const Manner& manner, int rate, double at) {
-      return TextRun(empty_room(manner, 3) + fmt::format("rate = {}\n", rate) + boxes)
-          .at(at)
-          .energies.total();
+  for (const auto& [pair, friction] : {std::pair(kComeToLie, 0.0), std::pair(kComeToLieRubbing, 0.3)}) {
+    const auto energy = [&](const Manner& manner, int rate) {
+      return clay(pair, manner, rate, friction).at(0.29).energies.total();
     };
-    const double at = 0.29, exact = energy(kManners[1], 600, at);
-    SCOPED_TRACE(boxes == smooth ? "smooth" : "rough");
-    EXPECT_NEAR(energy(kManners[0], 600, at), exact, 1e-3 * exact);
-    EXPECT_NEAR(energy(kManners[2], 1920, at), exact, 5e-3 * exact);
-    EXPECT_NEAR(energy(kManners[2], 3840, at), exact, 3e-3 * exact);
+    const double exact = energy(kManners[1], 600);
+    SCOPED_TRACE(friction);
+    EXPECT_NEAR(energy(kManners[0], 600), exact, 1e-3 * exact);
+    EXPECT_NEAR(energy(kManners[2], 1920), exact, 5e-3 * exact);
+    EXPECT_NEAR(energy(kManners[2], 3840), exact, 3e-3 * exact);
   }
 }
 
@@ -542,13 +541,7 @@ friction = 0.300
 // time (once 1,600 times as much here).
 TEST(Impacts, ForcesBetweenStepsAreThoseOfTheLast) {
   for (const Manner& manner : kManners) {
-    const TextRun run(
-        empty_room(manner, 2) +
-        "rate = 600\n"
-        "[[box]]\nsize = [0.33, 0.26]\nposition = [0, 0.14]\nangle = 30\nvelocity = [1.91, -0.44]\n"
-        "mass = 1\nelasticity = 0\nfriction = 0\n"
-        "[[box]]\nsize = [0.29, 0.25]\nposition = [0.6, 0.02]\nangle = 5\nspin = -45\n"
-        "velocity = [-0.49, -0.07]\nmass = 1\nelasticity = 0\nfriction = 0\n");
+    const TextRun run = clay(kSlideOff, manner, 600, 0);
     const auto force = [&](double t) {
       sim::Vec3 sum = sim::Vec3::Zero();
       for (const sim::Snapshot::Contact& contact : run.at(t).contacts) sum += contact.force;

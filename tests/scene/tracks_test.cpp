@@ -258,6 +258,29 @@ TEST(Wire, ABeadLeavesAnOpenEndAtItsTime) {
   }
 }
 
+// A rod that turns flings its bead off: r = r0 cosh(omega t), and at the end with both velocities.
+TEST(Wire, ABeadIsFlungOffARodThatTurns) {
+  const double omega = 2, r0 = 0.2, end = std::acosh(1 / r0) / omega,
+               out = r0 * omega * std::sinh(omega * end), angle = omega * end, t = 1.5;
+  const sim::Vec3 along(std::cos(angle), std::sin(angle), 0), across(-along.y(), along.x(), 0);
+  for (const std::string& mode : kTrackModes) {
+    for (const char* const rate : {"60", "600"}) {
+      TextRun rod(
+          open_room(mode, "gravity = [0, 0]") +
+              fmt::format("[[box]]\nname = \"rod\"\nsize = [0.05, 0.05]\nposition = [0, 0]\n"
+                          "motion = {{ angle = \"{:.17g}*t\" }}\n[[track]]\non = \"rod\"\n"
+                          "points = [[0.1, 0], [1, 0]]\nthread = \"bead\"\nfriction = 0\nends = \"free\"\n"
+                          "[[particle]]\nname = \"bead\"\nposition = [0.2, 0]\nvelocity = [0, 0.4]\n",
+                          omega * 180 / kHalfTurn),
+          {std::string("physics.rate=") + rate});
+      const auto bead = moving(rod.at(t), rod, "bead");
+      const sim::Vec3 velocity = out * along + omega * across;
+      EXPECT_NEAR((bead.velocity - velocity).norm(), 0, 5e-8) << mode << " " << rate;
+      EXPECT_NEAR((bead.position - along - (t - end) * velocity).norm(), 0, 5e-8) << mode << " " << rate;
+    }
+  }
+}
+
 // A helix is a slope that is wound up: s = g sin(a) t^2 / 2 along it.
 TEST(Wire, AHelixIsASlope) {
   for (const std::string& mode : kTrackModes) {

@@ -334,7 +334,7 @@ TEST(PlaneIterative, AHeapOfHundredsComesToRest) {
   for (int i = 0; i < 400; ++i)
     r.box({0.5, 0.5}, {2 + 0.9 * (i % 20) + 0.03 * (i / 20), 1 + 0.9 * (i / 20) + 0.01 * (i % 20)}, 0.6, 0,
           {0, 0}, 0.12 * (i % 7));
-  r.run(20);
+  r.run(15);
   EXPECT_EQ(std::count(r.state().frozen.begin(), r.state().frozen.end(), 1), 400);
   for (const Contact<2>& contact : r.state().contacts) EXPECT_GT(contact.gap, -1.1e-2 * std::sqrt(0.125));
   const auto before = r.state().x;
