@@ -102,7 +102,7 @@ class Account {
     const sim::SceneInfo::Bond& it = cast_.bonds[std::size_t(bond)];
     return fmt::format("the bond of {} and {} breaks", side(it.a), side(it.b));
   }
-  // what becomes of bodies or bonds at instants: of few each, of many how many
+  // what becomes of bodies, joints or bonds at instants: of few each, of many how many
   template <class Each>
   void tell(const std::vector<std::pair<double, int>>& all, const Each& each, const std::string& many,
             Told& told) const {
@@ -408,20 +408,13 @@ std::vector<std::string> Account::events() const {
                                   numeral(hardest->speed)));
     }
   }
-  for (std::size_t i = 0; i < broken_.size() && i < kToldSingly; ++i)
-    told.emplace_back(broken_[i].first,
-                      fmt::format("At {} {}.", when(broken_[i].first), parting(broken_[i].second)));
-  if (broken_.size() > kToldSingly)
-    told.emplace_back(1e300, fmt::format("{} joints {}.", broken_.size(),
-                                         parted_.size() >= broken_.size() ? "are let go" : "break"));
+  tell(
+      broken_, [&](int joint) { return parting(joint); },
+      parted_.size() >= broken_.size() ? "joints are let go" : "joints break", told);
   tell(
       cracked_, [&](int bond) { return cracking(bond); }, "bonds break", told);
-  for (std::size_t i = 0; i < made_.size() && i < kToldSingly; ++i)
-    told.emplace_back(made_[i].first,
-                      fmt::format("At {} {}.", when(made_[i].first), joining(made_[i].second)));
-  if (made_.size() > kToldSingly)
-    told.emplace_back(made_.back().first,
-                      fmt::format("By {} {} pairs hold together.", when(made_.back().first), made_.size()));
+  tell(
+      made_, [&](int joint) { return joining(joint); }, "pairs are joined", told);
   for (const auto& [name, times] : marks_)
     told.emplace_back(
         times.front(),
