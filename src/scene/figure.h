@@ -30,9 +30,11 @@ template <int D>
 std::vector<draw::Caption> captions(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
                                     const draw::Pace& speed, Diagnostics& complaints);
 
+/// Complains of the first plot of a figure or a film whose axis would be too low to read.
+void refuse_low_plots(const Node& top, const draw::Figure& figure, const Film& film, double type_scale,
+                      Diagnostics& complaints);
+
 /// The scene's [[film.plot]]s.
-/// Complains of the first plot of a film whose axis would be too low to read.
-void refuse_low_plots(const Node& top, const Film& film, double type_scale, Diagnostics& complaints);
 template <int D>
 std::vector<draw::Chart> charts(const Node& top, const Seating<D>& roster, const sim::World<D>& world,
                                 Diagnostics& complaints);

@@ -241,7 +241,7 @@ std::vector<Key> picture_rows() {
       {.path = "figure.plot.from", .form = rational, .unit = "s", .fallback = "0", .range = {0, 1e6}, .doc = "Start of the time axis.", .example = "0.5"},
       {.path = "figure.plot.to", .form = rational, .unit = "s", .absent = "the duration", .range = {0, 1e6}, .doc = "End of the time axis.", .example = "2"},
       {.path = "figure.plot.range", .form = limits, .absent = "all values", .doc = "Lowest and highest value of the axis, in the quantity's unit; lines are cut off there.", .example = "[0, 5]"},
-      {.path = "figure.plot.height", .form = number, .unit = "mm", .fallback = "36", .range = {10, 500}, .doc = "Height of the plot.", .example = "50"},
+      {.path = "figure.plot.height", .form = number, .unit = "mm", .fallback = "36", .range = {10, 500}, .doc = "Height of the plot, of which its title and its numbers take 10.6 mm times the scale of the type.", .example = "50"},
 
       {.path = "golden", .form = table, .doc = "What `obscura golden` draws and compares with references; see docs/golden.md."},
       {.path = "golden.at", .form = times, .unit = "s", .absent = "the start, and half the duration", .range = {0, 1e6},

@@ -309,7 +309,7 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
                      scene.look.bodies[std::size_t(vector.body)].quiet;
   scene.film.titles.captions = captions<D>(top, roster, world, scene.film.speed, complaints);
   scene.film.charts = charts<D>(top, roster, world, complaints);
-  refuse_low_plots(top, scene.film, scene.look.type_scale, complaints);
+  refuse_low_plots(top, scene.figure, scene.film, scene.look.type_scale, complaints);
 
   // overlaps may follow from other errors: report them only if there are none
   if (complaints.none() && model.collision != sim::Collision::handout)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "scene/body_kinds.h"
@@ -113,6 +114,25 @@ std::span<const Key> keys() { return language().all; }
 const Key* key(std::string_view path) {
   const auto found = language().index.find(path);
   return found == language().index.end() ? nullptr : &language().all[found->second];
+}
+
+std::string unit_of(std::string_view path) {
+  // a component has the unit of its vector
+  if (path.size() > 2 && path[path.size() - 2] == '.' && std::string_view("xyz").find(path.back()) < 3)
+    path.remove_suffix(2);
+  const Key* own = key(path);
+  if (own) return own->unit;
+  // a name in the place of its table's
+  const std::size_t dot = path.find('.');
+  if (dot == path.npos) return {};
+  const std::string_view rest = path.substr(dot);
+  std::vector<std::string_view> units;
+  for (const Key& each : keys())
+    if (const std::size_t table = each.path.find('.');
+        table != each.path.npos && std::string_view(each.path).substr(table) == rest)
+      units.push_back(each.unit);
+  const bool same = std::adjacent_find(units.begin(), units.end(), std::not_equal_to<>()) == units.end();
+  return !units.empty() && same && units[0].find(',') == units[0].npos ? std::string(units[0]) : "";
 }
 
 std::vector<const Key*> keys_of(std::string_view owner) {

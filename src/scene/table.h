@@ -104,6 +104,10 @@ std::span<const Key> keys();
 /// The key of a path; none where the language has no such key.
 const Key* key(std::string_view path);
 
+/// The unit of what a path names as --set does, "crate.velocity.x": that of its key in all tables whose
+/// members have it; empty where it has none, or they differ.
+std::string unit_of(std::string_view path);
+
 /// The keys right under a table, "" for the top.
 std::vector<const Key*> keys_of(std::string_view owner);
 

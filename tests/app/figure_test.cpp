@@ -1,8 +1,12 @@
 // Figures: the same picture as vectors and as pixels, type that stays type, arrows that end where the world
 // says.
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <regex>
 #include <set>
 
@@ -299,6 +303,110 @@ TEST_F(Figure, WordsStayOnThePage) {
     }
   }
   EXPECT_GT(words, 200);
+}
+
+/// In a corner the words of an arrow are on the page, whichever way it goes: seen from the picture's pixels
+/// they are those of the arrow's colour left of it and below.
+TEST_F(Figure, WordsOfAnArrowInACornerAreOnThePage) {
+  OBSCURA_NEEDS(page::writes(page::Form::pdf) && installed("pdftotext"), "libcairo2-dev, poppler-utils");
+  for (const auto& [place, velocity] :
+       {std::pair("[3.8, 2.8]", "[2, 2]"), std::pair("[0.2, 0.2]", "[-2, -2]"), std::pair("[0.2, 2.8]", "[-2, 2]"),
+        std::pair("[3.8, 0.2]", "[2, -2]")}) {
+    scene(fmt::format(R"(
+duration = 1
+[room]
+size = [4, 3]
+[[ball]]
+name = "d"
+position = {}
+velocity = {}
+[figure]
+at = 0
+[[figure.vector]]
+quantity = "velocity"
+of = "d"
+label = "speed = {{}}"
+)",
+                      place, velocity));
+    ASSERT_EQ(obscura("figure scene.toml -o a.pdf").exit, 0);
+    const std::string page = shell("pdftotext -bbox a.pdf -").out;
+    static const std::regex word("xMin=\"([-0-9.]+)\" yMin=\"([-0-9.]+)\" xMax=\"([-0-9.]+)\"[^>]*>2.83<");
+    std::smatch its;
+    ASSERT_TRUE(std::regex_search(page, its, word)) << page;
+    EXPECT_GE(std::stod(its[1]), 0);
+    EXPECT_GE(std::stod(its[2]), 0);
+    EXPECT_LE(std::stod(its[3]), 84 * 72 / 25.4);
+  }
+}
+
+/// Kinds of arrows that find no room beside the scale go on in another line.
+TEST_F(Figure, ALegendTakesLines) {
+  OBSCURA_NEEDS(page::writes(page::Form::pdf) && installed("pdftotext"), "libcairo2-dev, poppler-utils");
+  std::string text = R"(
+duration = 1
+[room]
+size = [4, 3]
+[[ball]]
+name = "d"
+position = [1, 2]
+velocity = [2, 0]
+[figure]
+at = 0.3
+scale_bar = true
+)";
+  for (const char* each : {"velocity", "acceleration", "momentum", "weight"})
+    text += fmt::format("[[figure.vector]]\nquantity = \"{}\"\nof = \"d\"\n", each);
+  scene(text);
+  ASSERT_EQ(obscura("figure scene.toml -o a.pdf").exit, 0);
+  const std::string page = shell("pdftotext -bbox a.pdf -").out;
+  static const std::regex word(
+      "xMin=\"([-0-9.]+)\" yMin=\"([-0-9.]+)\" xMax=\"([-0-9.]+)\" yMax=\"([-0-9.]+)\">");
+  std::vector<std::array<double, 4>> all;
+  for (std::sregex_iterator it(page.begin(), page.end(), word), end; it != end; ++it)
+    all.push_back({std::stod((*it)[1]), std::stod((*it)[2]), std::stod((*it)[3]), std::stod((*it)[4])});
+  EXPECT_GE(all.size(), 9u) << page;  // "1 m", four values with their units
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_GE(all[i][0], 0);
+    for (std::size_t j = 0; j < i; ++j) {
+      const double wide = std::min(all[i][2], all[j][2]) - std::max(all[i][0], all[j][0]),
+                   high = std::min(all[i][3], all[j][3]) - std::max(all[i][1], all[j][1]);
+      EXPECT_FALSE(wide > 0.5 && high > 4) << i << " " << j << "\n" << page;
+    }
+  }
+}
+
+/// The bodies' own arrows and those that have names are of one scale.
+TEST_F(Figure, AllArrowsHaveOneScale) {
+  scene(R"(
+duration = 1
+[room]
+size = [4, 3]
+gravity = [0, 0]
+[[ball]]
+name = "a"
+position = [1, 1]
+velocity = [2, 0]
+[[ball]]
+name = "b"
+position = [1, 2]
+velocity = [2, 0]
+[look]
+arrows = ["velocity"]
+[figure]
+at = 0
+[[figure.vector]]
+quantity = "velocity"
+of = "b"
+)");
+  ASSERT_EQ(obscura("figure scene.toml -o a.svg").exit, 0);
+  const std::string svg = contents(path("a.svg"));
+  // the tips of the heads: both own arrows', and that which has a name
+  static const std::regex head("d=\"M([0-9.]+) ([0-9.]+)L[^\"]*Z\" fill=\"#(009e73|087f60)\"");
+  std::vector<std::string> tips;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), head), end; it != end; ++it)
+    if (std::stod((*it)[2]) < 180) tips.push_back((*it)[1]);
+  ASSERT_EQ(tips.size(), 3u);
+  EXPECT_EQ(std::set<std::string>(tips.begin(), tips.end()).size(), 1u);
 }
 
 /// The white around an arrow ends where it leaves the ball: on the spring that it runs along it would be a

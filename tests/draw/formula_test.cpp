@@ -321,6 +321,11 @@ TEST(Formula, LargeAndSmallNumbersHaveAPowerOfTen) {
   EXPECT_THAT(as_numbers({0, 5e-8, 1e-7}), ElementsAre("0", "0.5 \\times 10^{-7}", "1 \\times 10^{-7}"));
   EXPECT_THAT(as_numbers({0, 0.00005, 0.0001}), ElementsAre("0", "0.5 \\times 10^{-4}", "1 \\times 10^{-4}"));
   EXPECT_THAT(as_numbers({-0.5, 1e-17, 0.5}), ElementsAre("-0.5", "0", "0.5"));
+  // as many digits as tell them apart
+  EXPECT_THAT(as_numbers({100000.5, 100001, 100001.5}), ElementsAre("100000.5", "100001", "100001.5"));
+  EXPECT_THAT(as_numbers({5, 5.0000001, 5.0000002}), ElementsAre("5", "5.0000001", "5.0000002"));
+  EXPECT_THAT(as_numbers({1e9, 1e9 + 1}), ElementsAre("1 \\times 10^{9}", "1.000000001 \\times 10^{9}"));
+  EXPECT_THAT(as_numbers({0.1 + 0.2, 0.4}), ElementsAre("0.3", "0.4"));
   EXPECT_EQ(with_value("p = {}", 1204318732728, "kg m/s"), "p = 1.20 \\times 10^{12}\" kg m/s\"");
   EXPECT_EQ(with_value("{}", 9.999e-5, "m"), "1.00 \\times 10^{-4}\" m\"");
   EXPECT_EQ(with_value("{}", 1216.4, "m/s"), "1216\" m/s\"");

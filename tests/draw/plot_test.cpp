@@ -17,6 +17,7 @@
 #include "draw/page/names_around.h"
 #include "draw/page/names_beside.h"
 #include "draw/page/readings.h"
+#include "draw/page/sheet.h"
 #include "draw/picture/formula.h"
 
 namespace obscura::draw {
@@ -95,6 +96,58 @@ TEST(Plot, ItsAxisBeginsAtZeroWhereThatCostsLittleRoom) {
       EXPECT_GE(tick, area.low - 1e-12);
       EXPECT_LE(tick, area.high + 1e-12);
     }
+  }
+}
+
+/// What is rounding is zero, not an axis of 1e-13; and zero is not drawn on the axis. Places have no zero of
+/// their own: one that changes by little is seen to.
+TEST(Plot, RoundingIsNotSpreadOverTheAxis) {
+  Plot plot = plot_of({0, 2e-13, -4e-13});
+  plot.negligible = 1e-9;
+  const PlotArea none = plot_area(plot, kRect, 2);
+  EXPECT_EQ(std::pair(none.low, none.high), std::pair(-1.1, 1.1));
+  plot = plot_of({100000.5, 100001, 100002});
+  EXPECT_EQ(plot_area(plot, kRect, 2).low, 0);
+  plot.placed = true;
+  const PlotArea place = plot_area(plot, kRect, 2);
+  EXPECT_GT(place.low, 100000);
+  EXPECT_LT(place.high, 100003);
+}
+
+/// A plot over a key with one value has that in its middle.
+TEST(Plot, OnePointIsInTheMiddle) {
+  for (const bool log : {false, true}) {
+    Plot plot = plot_of({3});
+    plot.times.clear(), plot.lines[0].along = {2}, plot.dotted = true, plot.log = log;
+    List list;
+    draw_plots({plot}, palette(Theme::paper), {kRect}, 1, list);
+    ASSERT_EQ(list.discs.size(), 1u);
+    const PlotArea area = plot_area(plot, kRect, kPoint);
+    EXPECT_NEAR(list.discs[0].center.x(), (area.left + area.right) / 2, 1);
+  }
+}
+
+/// In a narrow rectangle type is smaller, and no axis runs backwards.
+TEST(Plot, ANarrowPlotHasSmallerTypeAndAWideAxis) {
+  Plot plot = plot_of({0.25, 1.25, 0.75});
+  plot.title = "\"height\" / \"m\"";
+  for (const double width : {160.0, 250.0, 400.0}) {
+    Chart chart;
+    chart.place = Chart::Place::right, chart.share = width / 1080;
+    const PlotArea area =
+        Charts({chart}, {plot}, palette(Theme::paper), 1, 2, {}, 0, 1).shown().front().area;
+    EXPECT_GT(area.right - area.left, 0.2 * width) << width;
+    List list;
+    draw_plots({plot}, palette(Theme::paper), {{0, 0, width, 300}}, 3, list);
+    double left = 1e300, right = -1e300;
+    for (const Stroke& stroke : list.strokes)
+      for (int i = stroke.begin; i < stroke.end; ++i) {
+        left = std::min(left, list.nodes[std::size_t(i)].at.x());
+        right = std::max(right, list.nodes[std::size_t(i)].at.x());
+      }
+    EXPECT_GE(left, 0) << width;
+    EXPECT_LE(right, width) << width;
+    EXPECT_GT(right - left, 0.4 * width) << width;
   }
 }
 

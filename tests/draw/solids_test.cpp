@@ -6,10 +6,13 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "draw/compose/annotate.h"
 #include "draw/compose/annotations.h"
 #include "draw/made.h"
+#include "draw/page/sheet.h"
+#include "draw/picture/type.h"
 #include "draw/picture/upright.h"
 #include "draw/plane/stage.h"
 
@@ -375,6 +378,30 @@ TEST(Arrows, InLineShowWhereTheyBegin) {
   EXPECT_EQ(dots({4, 3, 0}, {0, 1, 0}), 0u) << "apart";
 }
 
+/// Two arrows that begin together and go one way are beside each other, and so are those over each other.
+TEST(Arrows, InLineAreBesideEachOther) {
+  const auto apart = [](const Vec3& second_tail, const Vec3& second) {
+    Made made = room(8, 4.5);
+    made.body(ShapeKind::box, {4, 2, 0}, 0.4);
+    Marks marks;
+    for (const auto& [tail, way] : {std::pair(Vec3(4, 1.6, 0), Vec3(0, 1, 0)), std::pair(second_tail, second)})
+      marks.vectors.push_back({.quantity = Quantity::position,
+                               .at = Site{-1, tail},
+                               .to = Site{-1, tail + way},
+                               .label = ""});
+    List list;
+    const Illustrator artist = made.depictor();
+    annotate(marks, {}, made.cast, artist.colours(), artist.projection(0, made.now), made.now, list);
+    // of each the halo, and the shaft
+    EXPECT_EQ(list.strokes.size(), 4u);
+    const auto x = [&](std::size_t i) { return list.nodes[std::size_t(list.strokes[i].begin)].at.x(); };
+    return std::abs(x(3) - x(1));
+  };
+  EXPECT_GT(apart({4, 1.6, 0}, {0, 0.5, 0}), 2 * kArrowLine * film_lettering(1, 1).arrow) << "together";
+  EXPECT_GT(apart({4, 2, 0}, {0, -1, 0}), 2 * kArrowLine * film_lettering(1, 1).arrow) << "over each other";
+  EXPECT_NEAR(apart({4, 1.6, 0}, {0, -1, 0}), 0, 1e-9) << "from one place to both sides";
+}
+
 /// The arrows of a film end below the ceiling, over which its title stands, where that costs less than two
 /// fifths of their length.
 TEST(Arrows, OfFilmsEndBelowTheTitle) {
@@ -461,6 +488,38 @@ TEST(Rulers, HaveAllTheirNumbersAndTheirNameBelow) {
   EXPECT_GT(numbers, 0) << "the last one is there";
   EXPECT_GT(name, numbers + 6 * kPoint);
   EXPECT_LT(name, artist.layout().height);
+}
+
+/// Far from the room's origin, and at heights with powers of ten: on the page, apart, each its own.
+TEST(Rulers, LongNumbersAreWholeAndApart) {
+  for (const auto& [low, high] :
+       {std::pair(Vec3(100000, 0, 0), Vec3(100004, 3, 0)), std::pair(Vec3(-2e8, -1.6e8, 0), Vec3(2e8, 1.6e8, 0)),
+        std::pair(Vec3(0, 123456, 0), Vec3(4, 123459, 0))}) {
+    Made made = room(8, 4.5);
+    made.cast.walls.clear();
+    Sheet sheet{.region = Extent{low, high}, .below = kRulerBelow, .left = kRulerLeft};
+    sheet.left = ruler_left(lay_out(made.cast, made.look, made.extent, sheet));
+    const Illustrator artist(made.cast, made.look, made.extent, sheet);
+    List list;
+    draw_rulers(artist.layout(), artist.view(0), artist.colours(), list);
+    std::vector<std::pair<double, double>> below;  // from where to where those under the picture reach
+    std::set<std::string> names;
+    for (const Text& text : list.texts) {
+      std::string said;
+      for (const Span& span : text.spans) said += span.text;
+      const double width = shape(text).width;
+      EXPECT_GE(text.at.x(), 0) << said;
+      EXPECT_LE(text.at.x() + width, artist.layout().width) << said;
+      const double under = text.at.y() - artist.layout().window.y - artist.layout().window.height;
+      if (under > 0 && under < 18 * kPoint) {
+        below.emplace_back(text.at.x(), text.at.x() + width);
+        EXPECT_TRUE(names.insert(said).second) << said;
+      }
+    }
+    std::sort(below.begin(), below.end());
+    EXPECT_GE(below.size(), 2u);
+    for (std::size_t i = 1; i < below.size(); ++i) EXPECT_GT(below[i].first, below[i - 1].second + 2);
+  }
 }
 
 TEST(Contacts, TheScaleSuitsTheWeights) {

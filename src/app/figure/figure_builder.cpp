@@ -9,6 +9,7 @@
 
 #include "app/console/exit.h"
 #include "app/console/interrupt.h"
+#include "app/run/ahead.h"
 #include "app/run/description.h"
 #include "app/run/plots.h"
 #include "app/run/run_marks.h"
@@ -262,9 +263,13 @@ Page FigureBuilder::page() const {
     const draw::Illustrator artist = depictor(cell, each);
     seen.push_back({&cell.panel->now, artist.projection(0, cell.panel->now)});
   }
-  const draw::Scales scales =
+  draw::Scales scales =
       draw::kept_whole(figure, panels_.front().cast, seen, draw::Lettering{}.arrow,
                        draw::scales(figure, panels_.front().cast, moments, window, scale));
+  // beside the bodies' own arrows, and where the scene says it, theirs
+  const draw::Scales given = given_scales(panels_.front().scene, panels_.front().cast);
+  if (given.velocity > 0) scales.velocity = given.velocity;
+  if (given.force > 0) scales.force = given.force;
 
   Page page;
   draw::List all;
@@ -314,8 +319,7 @@ Page FigureBuilder::page() const {
       left = layout.window.x + margin, right = width_ * draw::kPoint - margin;
     }
     top += 10 * draw::kPoint;
-    draw::draw_legend(figure, scales, colours, scale, left, right, top, all);
-    top += 4 * draw::kPoint;
+    top = draw::draw_legend(figure, scales, colours, scale, left, right, top, all) + 4 * draw::kPoint;
   }
   // plots below each other, as wide as the figure
   const std::vector<draw::Plot> plots = this->plots();
@@ -400,8 +404,11 @@ draw::Illustrator FigureBuilder::depictor(const Cell& cell, double width) const 
   }
   const draw::Figure& figure = panel.scene.figure;
   draw::Sheet sheet{.width = width, .above = panels_.size() > 1 ? kLetter : 0};
-  if (figure.axes) sheet.below = draw::kRulerBelow, sheet.left = draw::ruler_left();
   if (figure.low && figure.high) sheet.region = draw::Extent{*figure.low, *figure.high};
+  if (figure.axes) {
+    sheet.below = draw::kRulerBelow, sheet.left = draw::kRulerLeft;
+    sheet.left = draw::ruler_left(draw::lay_out(panel.cast, look, panel.scene.extent, sheet));
+  }
   return {panel.cast, look, panel.scene.extent, sheet};
 }
 

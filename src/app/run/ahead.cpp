@@ -58,17 +58,6 @@ double bytes(const sim::Snapshot& now) {
                 now.contacts.size() * sizeof(sim::Snapshot::Contact));
 }
 
-// the scales that a scene sets, or that its bodies' own arrows have
-draw::Scales given_scales(const scene::Scene& scene, const sim::SceneInfo& cast) {
-  draw::Scales scales;
-  bool velocity = scene.look.velocity_scale_given, force = scene.look.force_scale_given;
-  for (const draw::BodyLook& body : scene.look.bodies)
-    velocity = velocity || body.velocity, force = force || body.contact;
-  if (velocity) scales.velocity = scene.look.velocity_scale;
-  if (force) scales.force = scene.look.force_scale > 0 ? scene.look.force_scale : draw::newton(cast);
-  return scales;
-}
-
 // What a run shows from its start to its end: the lines of the film's charts, and what its marks need.
 struct Watched {
   std::vector<draw::Plot> plots;
@@ -286,6 +275,16 @@ void annotate(const Ahead& page, std::vector<Watched>& watched, std::vector<Ahea
 }
 
 }  // namespace
+
+draw::Scales given_scales(const scene::Scene& scene, const sim::SceneInfo& cast) {
+  draw::Scales scales;
+  bool velocity = scene.look.velocity_scale_given, force = scene.look.force_scale_given;
+  for (const draw::BodyLook& body : scene.look.bodies)
+    velocity = velocity || body.velocity, force = force || body.contact;
+  if (velocity) scales.velocity = scene.look.velocity_scale;
+  if (force) scales.force = scene.look.force_scale > 0 ? scene.look.force_scale : draw::newton(cast);
+  return scales;
+}
 
 Ahead ahead(const scene::Scene& scene) {
   const std::vector<draw::Chart>& wanted = scene.film.charts;

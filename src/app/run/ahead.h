@@ -9,4 +9,7 @@ namespace obscura::app {
 /// cannot go on they end there. Throws Interrupted.
 Ahead ahead(const scene::Scene& scene);
 
+/// The scales of arrows that a scene sets, or that its bodies' own arrows have; 0: of others.
+draw::Scales given_scales(const scene::Scene& scene, const sim::SceneInfo& cast);
+
 }  // namespace obscura::app

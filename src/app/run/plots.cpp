@@ -76,15 +76,16 @@ void plot_over(const scene::Scene& scene, const draw::Figure::Plot& wanted, draw
       plot.lines[k].values.push_back(wanted.reference.empty() ? found[k] : std::abs(found[k] - truth[k]));
     }
   }
-  const scene::Key* key = scene::key(over.path);
-  plot.name = draw::over_unit(over.symbol(), key ? key->unit : "");
+  plot.name = draw::over_unit(over.symbol(), scene::unit_of(over.path));
   if (const auto measures = wanted.measures(); !wanted.reference.empty() && !measures.empty())
     plot.title = draw::over_unit(std::string("\"error of\" ") + measures[0]->label, measures[0]->unit);
   plot.dotted = true;
+  if (!wanted.reference.empty()) plot.negligible = 0;
   if (!wanted.log) return;
   for (draw::Series& line : plot.lines) {
     const double exponent = slope(line.along, line.values);
-    line.note = fmt::format("\", slope {}{:.2f}\"", exponent < 0 ? "\u2212" : "", std::abs(exponent));
+    const bool falls = exponent <= -0.005;  // as it is rounded
+    line.note = fmt::format("\", slope {}{:.2f}\"", falls ? "\u2212" : "", std::abs(exponent));
   }
 }
 

@@ -18,6 +18,8 @@ namespace obscura::app {
 namespace {
 
 constexpr std::int64_t kMostValues = 1'000'000;  // of a key
+constexpr std::size_t kLongNumber = 10;          // characters: a longer one is rounded where it is shown
+constexpr int kDigits = 9;
 
 // "0.3" as a person types it, "1/3" as the nearest number
 std::string typed(sim::Rational r) {
@@ -138,7 +140,7 @@ std::string Variations::formula(std::int64_t run) const {
     const bool number = sim::parse_rational(values[k]).has_value();
     const bool whose = !alone(keys[k]);
     text += k ? ", " : "";
-    text += number ? keys[k].symbol(whose) + " = " + values[k] : '"' + keys[k].words(values[k], whose) + '"';
+    text += number ? keys[k].symbol(whose) + " = " + Variation::shown(values[k]) : '"' + keys[k].words(values[k], whose) + '"';
   }
   return text;
 }
@@ -151,6 +153,11 @@ std::string Variation::spoken(const std::string& value) {
   return draw::in_words(value);
 }
 
+std::string Variation::shown(const std::string& value) {
+  const auto number = sim::parse_rational(value);
+  return number && value.size() > kLongNumber ? fmt::format("{:.{}g}", sim::value(*number), kDigits) : value;
+}
+
 std::string Variation::words(const std::string& value, bool whose) const {
   const std::string key = spoken(whose ? path : name());
   if (value == "true") return key;
@@ -158,7 +165,7 @@ std::string Variation::words(const std::string& value, bool whose) const {
   const bool word = std::all_of(value.begin(), value.end(),
                                 [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; }) &&
                     !value.empty() && std::isalpha(static_cast<unsigned char>(value[0]));
-  return word ? spoken(value) : key + " = " + value;
+  return word ? spoken(value) : key + " = " + shown(value);
 }
 
 std::string Variation::name() const {

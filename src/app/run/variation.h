@@ -26,6 +26,8 @@ struct Variation {
   std::string words(const std::string& value, bool whose = false) const;
   /// A value for a person: "Euler" for euler, a space for an underscore.
   static std::string spoken(const std::string& value);
+  /// A number of many digits rounded, any other value as it is.
+  static std::string shown(const std::string& value);
   /// A value that is a number or a fraction. Throws UsageError where it is none.
   double number(const std::string& value) const;
 };

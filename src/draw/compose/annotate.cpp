@@ -90,14 +90,13 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   }
   arrows[0].hang = hang_;
   arrows[0].bare = bare(arrows[0].tail, arrows[0].tip);
-  // those of a film are drawn together: few batches
-  // axes lie under plates, so that words are read over them
-  const bool at_once = !film() || key.kind == WordKey::axis;
-  if (at_once && !how_.survey) draw_arrows(arrows, arrow_, colours_.room, ink, list_);
-  if (key.kind == WordKey::axis)
+  // axes lie under plates, so that words are read over them; the others are drawn when all are known
+  if (key.kind == WordKey::axis) {
+    if (!how_.survey) draw_arrows(arrows, arrow_, colours_.room, ink, list_);
     axes_.push_back(arrows[0]);
-  else
+  } else {
     arrows_.push_back(arrows[0]), inks_.push_back(ink);
+  }
   const Point end = film() ? arrows[0].tip : tip;
   placing_.avoid(tail, end, film() ? kOnArrow : kOnArrowInPrint, true);
   // in print its halo, too: words that touch it look cut
@@ -138,7 +137,9 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
                                  size(label), point_))
         places.push_back(still);
   }
+  const std::size_t words = words_.size();
   word(key, label, std::move(places), (tail + end) / 2, std::pair(tail, end), around.center);
+  if (key.kind != WordKey::axis && words_.size() > words) words_.back().shown = int(arrows_.size()) - 1;
   return true;
 }
 
@@ -164,13 +165,16 @@ std::optional<double> Notes::past(std::optional<int> body, const Point& tail, co
   return far;
 }
 
+bool Notes::begin_together(std::size_t i, std::size_t j) const {
+  return (arrows_[i].tail - arrows_[j].tail).norm() < kArrowLine * arrow_;
+}
+
 // How much arrow i lies on the line of arrow j and over it, 0 to 1, where it would also if either were longer
 // by so much.
 double Notes::on_one_line(std::size_t i, std::size_t j, double longer) const {
   const Arrow &a = arrows_[i], &b = arrows_[j];
   const Point along = a.tip - a.tail, other = b.tip - b.tail;
   const double length = along.norm(), wide = kArrowLine * arrow_;
-  if (i == j || (a.tail - b.tail).norm() < wide) return 0;
   const Point u = along / length, across(-u.y(), u.x());
   const double from = (b.tail - a.tail).dot(u), to = (b.tip - a.tail).dot(u);
   const double shared = std::min(std::max(from, to), length) - std::max(std::min(from, to), 0.0) + longer;
@@ -186,7 +190,7 @@ std::vector<double> Notes::tails() const {
   std::vector<double> strength(arrows_.size(), 0);
   for (std::size_t i = 0; i < arrows_.size() && view_.view(); ++i)
     for (std::size_t j = 0; j < arrows_.size(); ++j)
-      strength[i] = std::max(strength[i], on_one_line(i, j, 0));
+      if (i != j && !begin_together(i, j)) strength[i] = std::max(strength[i], on_one_line(i, j, 0));
   return strength;
 }
 
@@ -197,7 +201,8 @@ void Notes::mark_tails(const std::vector<double>& strength) {
   }
 }
 
-// Two arrows on one line that meet head on, or lie over each other, are moved to either side of it.
+// Two arrows on one line that meet head on, or lie over each other, are moved to either side of it, and the
+// ends of their words' leaders with them.
 void Notes::set_apart() {
   const double wide = kArrowLine * arrow_;
   std::vector<Point> moved(arrows_.size(), Point(0, 0));
@@ -205,10 +210,16 @@ void Notes::set_apart() {
     for (std::size_t j = i + 1; j < arrows_.size(); ++j) {
       const Point u = (arrows_[i].tip - arrows_[i].tail).normalized(), across(-u.y(), u.x());
       const bool head_on = u.dot(arrows_[j].tip - arrows_[j].tail) < 0;
+      if (head_on && begin_together(i, j)) continue;
       const double by = kApart * wide * on_one_line(i, j, head_on ? kHeads * wide : 0);
       moved[i] -= by * across, moved[j] += by * across;
     }
   for (std::size_t i = 0; i < arrows_.size(); ++i) arrows_[i].tail += moved[i], arrows_[i].tip += moved[i];
+  for (Word& word : words_) {
+    if (word.shown < 0) continue;
+    const Point& by = moved[std::size_t(word.shown)];
+    word.anchor += by, word.arrow->first += by, word.arrow->second += by;
+  }
 }
 
 void Notes::hang(const Vec3& a, const Vec3& b) {

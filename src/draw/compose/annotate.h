@@ -158,12 +158,12 @@ void annotate(const Marks& marks, const Scales& scales, const sim::SceneInfo& ca
 void draw_rulers(const Layout& layout, const View& view, const Palette& colours, List& list);
 inline constexpr double kRulerBelow = 25, kRulerLeft = 27;  // pt, at the left at least
 /// The same at the left, pt: more in fonts in which the upright ruler's name is wide.
-double ruler_left();
+double ruler_left(const Layout& layout);
 
-/// Whether a figure has a line of legend, and puts it down from `left` to `right` (page units) on a baseline:
-/// the room's scale, and an arrow of each kind.
+/// Whether a figure has a legend, and puts it down from `left` to `right` (page units): the room's scale, and
+/// an arrow of each kind. `baseline`: of its first line. Returns that of the last.
 bool has_legend(const Figure& figure);
-void draw_legend(const Figure& figure, const Scales& scales, const Palette& colours, double scale,
+double draw_legend(const Figure& figure, const Scales& scales, const Palette& colours, double scale,
                  double left, double right, double baseline, List& list);
 
 /// The largest of 1, 2, 5 times a power of ten that is not above x.

@@ -14,6 +14,7 @@
 namespace obscura::draw {
 namespace {
 
+constexpr double kSmallestName = 0.55;
 constexpr double kName = 26, kNameStrip = 46, kNameRise = 13;  // page units at the weight 1
 constexpr double kPanelGap = 22, kPageEdge = 36, kBelowCaption = 8;
 constexpr double kWords = 24, kRow = 34, kPlateAround = 6;  // of words in a window's corner
@@ -169,8 +170,12 @@ Picture Comparison::depict(const std::vector<Instant>& runs, double time, double
       draw_words(layout_, *list);
       charts_.draw_still(*list);
       const double w = layout_.weight;
+      // where they are too long for their panels they are all smaller, before one loses its end
+      double size = kName * w * look_.type_scale, fit = 1;
+      for (std::size_t i = 0; i < parts.size(); ++i)
+        fit = std::min(fit, panels_[i].width / std::max(1.0, width_of(runs_[i].name, Face::bold, size)));
+      size *= std::max(fit, kSmallestName);
       for (std::size_t i = 0; i < parts.size(); ++i) {
-        const double size = kName * w * look_.type_scale;
         const std::string name = fitted(runs_[i].name, Face::bold, size, panels_[i].width);
         const Point at(panels_[i].x + kPlateAround * w, panels_[i].y - kNameRise * w * look_.type_scale);
         add_prose(name, Face::bold, size, runs_[i].color, at, Align::left, *list);

@@ -1,4 +1,4 @@
-// The line under a picture that says how long a metre and how strong an arrow is; and how long arrows are.
+// The lines under a picture that say how long a metre and how strong an arrow is; and how long arrows are.
 
 #include <fmt/format.h>
 
@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kSmall = 8.5 * kPoint;                     // em
 constexpr double kLongest = 0.34;                           // of the picture's shorter side
+constexpr double kLegendLine = 10 * kPoint, kKindsApart = 10 * kPoint;
 constexpr double kLegendArrow = 1.1 * kPoint / kArrowLine;  // weight at which a shaft is 1.1 pt
 
 }  // namespace
@@ -54,14 +55,10 @@ bool has_legend(const Figure& figure) {
                                          [&](const auto& v) { return scale_of(v.quantity, any) != nullptr; });
 }
 
-void draw_legend(const Figure& figure, const Scales& scales, const Palette& colours, double scale,
+double draw_legend(const Figure& figure, const Scales& scales, const Palette& colours, double scale,
                  double left, double right, double baseline, List& list) {
-  const double middle = baseline - 0.24 * kSmall;
-  const auto write = [&](const std::string& text, double x, Color ink) {
-    const Formula f = formula(text, kSmall, ink);
-    add(f, {x, baseline}, list);
-    return f.width;
-  };
+  double middle = baseline - 0.24 * kSmall;
+  double taken = left;  // of the line, from the left
   // the room's scale at the left
   if (figure.scale_bar) {
     const double metres = round_below(0.25 * (right - left) / scale), length = metres * scale;
@@ -71,9 +68,11 @@ void draw_legend(const Figure& figure, const Scales& scales, const Palette& colo
     };
     line({left, middle}, {left + length, middle});
     for (const double x : {left, left + length}) line({x, middle - tick}, {x, middle + tick});
-    write(as_number(metres) + " \"m\"", left + length + 3 * kPoint, colours.ink);
+    const Formula f = formula(as_number(metres) + " \"m\"", kSmall, colours.ink);
+    add(f, {left + length + 3 * kPoint, baseline}, list);
+    taken = left + length + 3 * kPoint + f.width + kKindsApart;
   }
-  // from the right: an arrow of each kind
+  // from the right: an arrow of each kind; what finds no room goes on in a line of its own
   double x = right;
   struct Each {
     double scale;
@@ -88,6 +87,10 @@ void draw_legend(const Figure& figure, const Scales& scales, const Palette& colo
     const double value = round_below(32 * kPoint / (kind.scale * scale));
     const double length = value * kind.scale * scale;
     const Formula f = formula(fmt::format("{} \"{}\"", as_number(value), kind.unit), kSmall, colours.ink);
+    if (x - f.width - 3 * kPoint - length < taken && (taken > left || x < right)) {
+      baseline += kLegendLine, middle += kLegendLine;
+      x = right, taken = left;
+    }
     x -= f.width;
     add(f, {x, baseline}, list);
     x -= 3 * kPoint;
@@ -97,8 +100,9 @@ void draw_legend(const Figure& figure, const Scales& scales, const Palette& colo
     Marks::Vector of;
     of.quantity = kind.quantity;
     draw_arrows(arrows, kLegendArrow, colours.ground, color_of(of, colours), list);
-    x -= length + 10 * kPoint;
+    x -= length + kKindsApart;
   }
+  return baseline;
 }
 
 }  // namespace obscura::draw

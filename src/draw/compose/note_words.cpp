@@ -32,6 +32,8 @@ constexpr double kRailChord = 8;    // the length of a curve's pieces, as words 
 constexpr double kOnRail = 4;       // of each unit of a curve under words
 constexpr double kOnTrail = 0.8;    // of each unit of a trail or path under words
 constexpr double kFromEdge = 3;     // points: from words to the page's edge at least
+constexpr double kOnPage = 0.1;     // page units: more than rounding
+constexpr double kNear = 6;         // points: from its place without a leader a word is moved by less
 constexpr double kLeaves = 1.5;     // times as fast as what they name words leave the page with it
 constexpr double kLedAcross = 12;   // points: of a leader across an arrow or over another body
 constexpr double kNameCovered = 6;  // as against the cost of other words over something
@@ -193,6 +195,27 @@ Point Notes::on_page(const Word& word, const Point& center) const {
     return std::clamp(center[i], low + half[i] - kLeaves * under, high - half[i] + kLeaves * over);
   };
   return {moved(0, page.x, page.x + page.width), moved(1, page.y, page.y + page.height)};
+}
+
+// The places of a word in print, and those that would leave the page moved onto it. What names something
+// beyond its edge stays there.
+std::vector<Placing::Candidate> Notes::places_on_page(const Word& word) const {
+  std::vector<Placing::Candidate> all = word.places;
+  const Rect page = view_.window();
+  const Point size = Notes::size(word.set);
+  const double margin = kMarginInPrint * size.y() + kOnPage;
+  const Point half = size / 2 + Point(margin, margin), low(page.x, page.y),
+              high = low + Point(page.width, page.height);
+  const auto is_on_page = [&](const Point& p) {
+    return (p.array() >= low.array()).all() && (p.array() <= high.array()).all();
+  };
+  if (!is_on_page(word.anchor) || (high - low - 2 * half).minCoeff() < 0) return all;
+  for (const Placing::Candidate& place : word.places) {
+    const Point center = place.center.cwiseMax(low + half).cwiseMin(high - half);
+    const double far = (center - place.center).norm();
+    if (far > 0) all.push_back({center, place.cost + far, place.leader || far > kNear * point_});
+  }
+  return all;
 }
 
 // Words stand out against what they cover.
@@ -384,7 +407,7 @@ void Notes::finish() {
       const Word& word = words_[i];
       if ((word.places.size() == 1) != sole) continue;
       Placed& it = placed[i];
-      it.at = how_.plan ? planned(word, it.leader) : placing_.place(size(word.set), word.places);
+      it.at = how_.plan ? planned(word, it.leader) : placing_.place(size(word.set), places_on_page(word));
       if (film()) it.at.center = on_page(word, it.at.center);
     }
   if (how_.plan) yield(placed);
@@ -397,7 +420,11 @@ void Notes::finish() {
       plate(whole(placed[i].at.center), size(set), set.color.a);
     }
   const std::vector<double> tails = this->tails();
-  if (film()) set_apart(), draw_arrows(arrows_, inks_, arrow_, colours_.room, list_);
+  set_apart();
+  if (film()) draw_arrows(arrows_, inks_, arrow_, colours_.room, list_);
+  // in print each has a halo over those before it
+  for (std::size_t i = 0; !film() && i < arrows_.size(); ++i)
+    draw_arrows({arrows_[i]}, arrow_, colours_.room, inks_[i], list_);
   list_.hang({});
   mark_tails(tails);
   for (const auto& [at, ink, hang] : dots_) {

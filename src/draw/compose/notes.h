@@ -40,6 +40,7 @@ class Notes {
   void finish();
 
  private:
+  bool begin_together(std::size_t i, std::size_t j) const;
   double on_one_line(std::size_t i, std::size_t j, double longer) const;
   std::vector<double> tails() const;
   void mark_tails(const std::vector<double>& strength);
@@ -58,6 +59,7 @@ class Notes {
     std::optional<Hang> hang;
     Point along{0, 0};             // the body that the arrow goes with
     std::vector<Point> outline{};  // convex: of the body that it names, where a leader ends
+    int shown = -1;                // of the arrows: that which it names
   };
   /// Where a word stands, and how much of its leader and of itself is seen.
   struct Placed {
@@ -79,6 +81,7 @@ class Notes {
               Color ink);
   Placing::Candidate planned(const Word& word, double& leader) const;
   Point on_page(const Word& word, const Point& center) const;
+  std::vector<Placing::Candidate> places_on_page(const Word& word) const;
   void plate(const Point& center, const Point& size, std::uint8_t strength);
   static Point led_to(const Word& word, const Point& center);
   void lead(const Word& word, const Point& center, double strength);

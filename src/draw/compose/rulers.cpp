@@ -22,21 +22,56 @@ constexpr double kFarNumbers = 26 * kPoint,
                  kNearNumbers = 18 * kPoint;  // between numbers beside and above each other
 
 constexpr double kNameBetween = 2.6 * kRulerType;  // between two numbers that have the name between them
+constexpr double kNumbersApart = 4 * kPoint;       // beside each other
+constexpr double kOffTick = 6 * kPoint;            // how far a number's middle is from its tick at most
+
+double widest(const std::vector<std::string>& numbers) {
+  double all = 0;
+  for (const std::string& each : numbers) all = std::max(all, formula(each, kRulerType, {}).width);
+  return all;
+}
+
+// the visible part of the world: inside the hatching
+Rect seen_part(const Layout& layout) {
+  const Rect& w = layout.window;
+  const double band = layout.clipped ? 0 : kBand * layout.weight + 2 * kPoint;
+  return {w.x + band, w.y + band, w.width - 2 * band, w.height - 2 * band};
+}
+
+// round heights from `low` to `high`, at this height on the page
+std::vector<double> upward(double low, double high, double height) {
+  return ticks(low, high, int(height / kNearNumbers));
+}
+
+// round places, so few that their numbers do not touch
+std::vector<double> across(double low, double high, double width) {
+  std::vector<double> found;
+  for (int count = int(width / kFarNumbers); count > 0; --count) {
+    found = ticks(low, high, count);
+    if (found.size() < 2 ||
+        (found[1] - found[0]) / (high - low) * width >= widest(as_numbers(found)) + kNumbersApart)
+      break;
+  }
+  return found;
+}
 
 }  // namespace
 
-double ruler_left() {
+double ruler_left(const Layout& layout) {
+  const Rect part = seen_part(layout);
+  const double up = (layout.middle.y() - part.y) / layout.scale,
+               down = (part.y + part.height - layout.middle.y()) / layout.scale;
+  const std::vector<double> heights =
+      upward(layout.center.y() - down, layout.center.y() + up, part.height);
   // the name of what is up is wider in some fonts
-  const double name = formula(kUpward, kRulerType, {}).width;
-  return std::max(kRulerLeft, (kOff + kTick + 1.5 * kPoint + name + kInside) / kPoint);
+  const double widest_text = std::max(formula(kUpward, kRulerType, {}).width, widest(as_numbers(heights)));
+  return std::max(kRulerLeft, (kOff + kTick + 1.5 * kPoint + widest_text + kInside) / kPoint);
 }
 
 void draw_rulers(const Layout& layout, const View& view, const Palette& colours, List& list) {
   const Rect& w = layout.window;
-  // the visible part of the world: inside the hatching
-  const double band = layout.clipped ? 0 : kBand * layout.weight + 2 * kPoint;
-  const double left = w.x + band, right = w.x + w.width - band;
-  const double top = w.y + band, bottom = w.y + w.height - band;
+  const Rect part = seen_part(layout);
+  const double left = part.x, right = part.x + part.width, top = part.y, bottom = part.y + part.height;
   const double x_low = (left - view.origin.x()) / view.scale, x_high = (right - view.origin.x()) / view.scale;
   const double y_low = (view.origin.y() - bottom) / view.scale, y_high = (view.origin.y() - top) / view.scale;
   const double under = w.y + w.height + kOff, beside = w.x - kOff;
@@ -56,17 +91,28 @@ void draw_rulers(const Layout& layout, const View& view, const Palette& colours,
   // the name in a line of its own: beside the numbers it would take the place of the last
   write("x / \"m\"", {(left + right) / 2, base + kNameBelow}, 0.5);
   const double page_left = w.x, page_right = w.x + w.width;
-  const std::vector<double> across = ticks(x_low, x_high, int((right - left) / kFarNumbers));
-  const std::vector<std::string> under_them = as_numbers(across);
-  for (std::size_t i = 0; i < across.size(); ++i) {
-    const double at = view.page({across[i], 0, 0}).x();
-    line({at, under}, {at, under + kTick});
+  const std::vector<double> places = across(x_low, x_high, right - left);
+  const std::vector<std::string> under_them = as_numbers(places);
+  // a number that the page's edge would push off its tick is left out, if two remain
+  std::vector<double> middles;
+  std::size_t at_their_ticks = 0;
+  const auto is_there = [&](std::size_t i) {
+    return std::abs(middles[i] - view.page({places[i], 0, 0}).x()) <= kOffTick;
+  };
+  for (std::size_t i = 0; i < places.size(); ++i) {
     const double half = formula(under_them[i], kRulerType, colours.ink).width / 2 + kInside;
-    write(under_them[i], {std::clamp(at, page_left + half, page_right - half), base}, 0.5);
+    middles.push_back(
+        std::clamp(view.page({places[i], 0, 0}).x(), page_left + half, page_right - half));
+    at_their_ticks += is_there(i);
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double at = view.page({places[i], 0, 0}).x();
+    line({at, under}, {at, under + kTick});
+    if (is_there(i) || at_their_ticks < 2) write(under_them[i], {middles[i], base}, 0.5);
   }
   line({beside, top}, {beside, bottom});
   // the name between the numbers at the upper end, or in place of the last where they are close
-  const std::vector<double> up = ticks(y_low, y_high, int((bottom - top) / kNearNumbers));
+  const std::vector<double> up = upward(y_low, y_high, bottom - top);
   const std::vector<std::string> beside_them = as_numbers(up);
   const auto page_y = [&](double y) { return view.page({0, y, 0}).y(); };
   double name = top + 0.26 * kRulerType;
@@ -81,6 +127,8 @@ void draw_rulers(const Layout& layout, const View& view, const Palette& colours,
   for (std::size_t i = 0; i < up.size(); ++i) {
     const double at = page_y(up[i]);
     line({beside, at}, {beside - kTick, at});
+    // nor one that the page's edge would cut
+    if (at + 0.24 * kRulerType - formula(beside_them[i], kRulerType, {}).ascent < kInside) continue;
     if (between || at > top + 1.4 * kRulerType)
       write(beside_them[i], {numbers_end, at + 0.24 * kRulerType}, 1);
   }

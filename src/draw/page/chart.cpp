@@ -90,8 +90,21 @@ Charts::Charts(const std::vector<Chart>& charts, const std::vector<Plot>& plots,
     : colours_(colours), casts_(casts), foot_(foot) {
   std::tie(right_, below_) = room(charts, aspect);
   const std::vector<Rect> rects = places_of(charts, aspect, foot);
+  const double usual = kType * page_weight(aspect) * type_scale;
+  for (double point = usual; point > kLeastType * usual; point *= kSmaller) {
+    lay_out_panels(charts, plots, rects, point, seconds);
+    std::vector<const PlotArea*> areas;
+    std::vector<const Rect*> places;
+    for (std::size_t i = 0; i < panels_.size(); ++i)
+      areas.push_back(&panels_[i].area), places.push_back(&rects[i]);
+    if (are_wide(areas, places)) break;
+  }
+}
+
+void Charts::lay_out_panels(const std::vector<Chart>& charts, const std::vector<Plot>& plots,
+                            const std::vector<Rect>& rects, double point, double seconds) {
+  panels_.clear();
   for (std::size_t i = 0; i < charts.size(); ++i) {
-    const double point = kType * page_weight(aspect) * type_scale;
     panels_.push_back({charts[i], plots[i], plot_area(plots[i], rects[i], point), {}, {}, false});
     PlotArea& area = panels_.back().area;
     if (charts[i].against.empty())
@@ -123,6 +136,12 @@ std::vector<double> Charts::axis_heights(const std::vector<Chart>& charts, doubl
   const double around = (kPlotAbove + kPlotBelow) * kType * page_weight(aspect) * type_scale;
   std::vector<double> all;
   for (const Rect& rect : places_of(charts, aspect, foot)) all.push_back(rect.height - around);
+  return all;
+}
+
+std::vector<double> Charts::widths(const std::vector<Chart>& charts, double aspect, double foot) {
+  std::vector<double> all;
+  for (const Rect& rect : places_of(charts, aspect, foot)) all.push_back(rect.width);
   return all;
 }
 

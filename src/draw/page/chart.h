@@ -47,6 +47,9 @@ class Charts {
   static std::vector<double> axis_heights(const std::vector<Chart>& charts, double aspect, double foot,
                                           double type_scale);
 
+  /// How wide charts are, axes and all that is beside them, page units.
+  static std::vector<double> widths(const std::vector<Chart>& charts, double aspect, double foot);
+
   bool empty() const { return panels_.empty(); }
   /// How much of the page they take, page units.
   double right() const { return right_; }
@@ -89,6 +92,9 @@ class Charts {
     /// For which part of the run names are not seen, of all names together.
     double unseen() const;
   };
+  /// Axes and the places of names, in type of this size.
+  void lay_out_panels(const std::vector<Chart>& charts, const std::vector<Plot>& plots,
+                      const std::vector<Rect>& rects, double point, double seconds);
   void place_names(Panel& panel, const Rect& rect, double seconds) const;
   void end_zero_line(const Panel& panel, std::size_t line, const Point& name, double seen, List& list) const;
   static std::vector<std::vector<Point>> heads(const Panel& panel);

@@ -248,6 +248,10 @@ Plot empty_plot(const Measured& measured, const Palette& colours, const sim::Sce
     plot.title = over_unit(own ? title(*measures[0]) : all, measures[0]->unit);
   }
   plot.range = measured.range;
+  plot.placed = std::all_of(measures.begin(), measures.end(), [](const Measure* each) {
+    return each->name == "x" || each->name == "y" || each->name == "z";
+  });
+  for (const Measure* each : measures) plot.negligible = std::max(plot.negligible, negligible(each->unit, cast));
   if (const Measure* other = measure(measured.against)) plot.name = over_unit(title(*other), other->unit);
   return plot;
 }

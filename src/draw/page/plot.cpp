@@ -27,6 +27,8 @@ constexpr double kHeadroom = 0.05;                 // of the range of the values
 constexpr double kFromZero = 0.4;   // of the largest value: what changes by less is shown without zero
 constexpr double kConstant = 1e-3;  // and what changes by less than this with it
 
+constexpr double kLeastWidth = 0.4;  // of its rectangle's: that of an axis
+
 constexpr double kTicksApart = 9;  // points: from a number of the values' axis to the next at least
 constexpr double kTwoApart = 6.5;  // the same where there are two: their digits do not touch
 constexpr int kMostSteps = 20;     // of an axis: that are looked at for two numbers
@@ -251,6 +253,12 @@ void share_margins(std::span<PlotArea*> areas) {
   }
 }
 
+bool are_wide(std::span<const PlotArea* const> areas, std::span<const Rect* const> rects) {
+  for (std::size_t i = 0; i < areas.size(); ++i)
+    if (areas[i]->right - areas[i]->left < kLeastWidth * rects[i]->width) return false;
+  return true;
+}
+
 PlotArea plot_area(const Plot& plot, const Rect& rect, double point, bool keyed) {
   PlotArea area;
   area.point = point, area.log = plot.log;
@@ -263,7 +271,12 @@ PlotArea plot_area(const Plot& plot, const Rect& rect, double point, bool keyed)
   if (across.high < across.low) across = {1, 1};
   if (up.high < up.low) up = {1, 1};
   area.first = across.low, area.last = across.high;
-  if (!(area.last > area.first)) area.last = plot.log ? 10 * area.first : area.first + 1;
+  if (!(area.last > area.first) && !plot.dotted) area.last = plot.log ? 10 * area.first : area.first + 1;
+  if (!(area.last > area.first)) {
+    // the one point is in the middle
+    const double around = area.first == 0 ? 1 : 0.5 * std::abs(area.first), only = area.first;
+    area.first = plot.log ? only / 3 : only - around, area.last = plot.log ? 3 * only : only + around;
+  }
 
   if (plot.range && (!plot.log || plot.range->first > 0)) {
     area.low = plot.range->first, area.high = plot.range->second;
@@ -273,9 +286,12 @@ PlotArea plot_area(const Plot& plot, const Rect& rect, double point, bool keyed)
                  last = std::max(first + 1, std::ceil(std::log10(up.high) - 1e-9));
     area.low = std::pow(10, first), area.high = std::pow(10, last);
   } else {
+    if (std::max(std::abs(up.low), std::abs(up.high)) <= plot.negligible) up = {0, 0};
     const double most = std::max(std::abs(up.low), std::abs(up.high)), range = up.high - up.low;
-    if (range > kFromZero * most || range < kConstant * most || !(most > 0)) up.take(0);
-    if (!(up.high > up.low)) up.take(up.low + 1);
+    const bool constant = plot.placed ? range <= plot.negligible : range < kConstant * most;
+    if (range > kFromZero * most || constant || !(most > 0)) up.take(0);
+    // a line along zero is not on the axis
+    if (!(up.high > up.low)) up = {-1, 1};
     // a little room around what is there; none below zero if nothing is
     const double room = kHeadroom * (up.high - up.low);
     area.low = up.low == 0 ? 0 : up.low - room, area.high = up.high == 0 ? 0 : up.high + room;
@@ -438,14 +454,22 @@ void draw_plots(const std::vector<Plot>& plots, const Palette& colours, const st
                 double type_scale, List& list) {
   std::vector<const Plot*> shown;
   std::vector<PlotArea> areas;
+  std::vector<const Rect*> places;
   for (std::size_t i = 0; i < plots.size(); ++i) {
-    if (plots[i].lines.empty() || along(plots[i], plots[i].lines.front()).size() < 2) continue;
-    shown.push_back(&plots[i]), areas.push_back(plot_area(plots[i], rects[i], type_scale * kPoint));
-    lead_names(*shown.back(), areas.back());
+    if (plots[i].lines.empty() || along(plots[i], plots[i].lines.front()).empty()) continue;
+    shown.push_back(&plots[i]), places.push_back(&rects[i]);
   }
-  std::vector<PlotArea*> all;
-  for (PlotArea& area : areas) all.push_back(&area);
-  share_margins(all);
+  for (double point = type_scale * kPoint; point > kLeastType * type_scale * kPoint; point *= kSmaller) {
+    areas.clear();
+    std::vector<PlotArea*> all;
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      areas.push_back(plot_area(*shown[i], *places[i], point));
+      lead_names(*shown[i], areas.back());
+    }
+    for (PlotArea& area : areas) all.push_back(&area);
+    share_margins(all);
+    if (are_wide(std::vector<const PlotArea*>(all.begin(), all.end()), places)) break;
+  }
   for (std::size_t i = 0; i < shown.size(); ++i) {
     draw_axes(*shown[i], areas[i], colours, list);
     draw_lines(*shown[i], areas[i], list);

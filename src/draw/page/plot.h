@@ -39,6 +39,8 @@ struct Plot {
   bool dotted = false;             // a dot at each value
   std::vector<Dot> dots;
   std::optional<std::pair<double, double>> range{};  // of the values' axis; none: all there are
+  double negligible = 0;  // smaller values are zero
+  bool placed = false;    // its values are places, of which zero is one like others
 };
 
 /// The mapping from a plot's values to the page.
@@ -62,13 +64,18 @@ struct PlotArea {
   bool spans(double value) const { return value >= low && value <= high; }
 };
 
-/// Axes for all of a plot's values in a rectangle of the page. Requires two times and a line at least. They
+/// Axes for all of a plot's values in a rectangle of the page. Requires a line with a value at least. They
 /// begin at zero, unless what is plotted is far from it next to how much it changes. `keyed`: the names are
 /// in a key, however few they are.
 PlotArea plot_area(const Plot& plot, const Rect& rect, double point, bool keyed = false);
 
 /// Gives plots under each other the same left and right ends.
 void share_margins(std::span<PlotArea*> areas);
+
+/// Whether the axes of plots are so wide next to their rectangles that what they show can be seen. Where they
+/// are not their type is made smaller.
+bool are_wide(std::span<const PlotArea* const> areas, std::span<const Rect* const> rects);
+inline constexpr double kSmaller = 0.92, kLeastType = 0.1;  // by how much at once, and to which part at least
 
 /// A name over its unit, as mathematics: "v / m s^{-1}".
 std::string over_unit(const std::string& name, const std::string& unit);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "draw/picture/formula_text.h"
 
@@ -47,6 +48,8 @@ std::string spaced(std::string_view unit) {
 // a number with three digits that count has a power of ten from here up, and below that
 constexpr double kLarge = 999'999.5, kSmall = 1e-4;
 constexpr double kZero = 1e-9;             // of the largest number of an axis
+constexpr int kUsualDigits = 6, kMostDigits = 15;  // of the numbers of an axis
+constexpr double kOfStep = 1e-3;                   // between two of them: how far off one is at most
 constexpr double kBetweenSamples = 0.005;  // of the range of a live value
 
 // the exponent of a number that has a power of ten
@@ -73,6 +76,22 @@ std::string number(double value, int decimals) {
 
 std::string times_power(int exponent) { return fmt::format(" \\times 10^{{{}}}", exponent); }
 
+// of how many digits the numbers of an axis are
+int digits_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (values[i] > values[i - 1]) step = std::min(step, values[i] - values[i - 1]);
+  const auto told = [&](int digits) {
+    return std::all_of(values.begin(), values.end(), [&](double value) {
+      return std::abs(std::stod(fmt::format("{:.{}g}", value, digits)) - value) <= kOfStep * step;
+    });
+  };
+  int digits = kUsualDigits;
+  while (digits < kMostDigits && !told(digits)) ++digits;
+  return digits;
+}
+
 // a text with its value and unit in the place of its slot
 std::string filled(const std::string& text, const ValueSlot& slot, const std::string& value,
                    std::string_view unit) {
@@ -91,10 +110,10 @@ std::string filled(const std::string& text, const ValueSlot& slot, const std::st
 
 }  // namespace
 
-std::string as_number(double value, std::optional<int> exponent) {
+std::string as_number(double value, std::optional<int> exponent, int digits) {
   if (!exponent) exponent = power_of_ten(std::abs(value));
-  if (value == 0 || !exponent) return fmt::format("{:g}", value == 0 ? 0.0 : value);
-  return fmt::format("{:g}", value / std::pow(10, *exponent)) + times_power(*exponent);
+  if (value == 0 || !exponent) return fmt::format("{:.{}g}", value == 0 ? 0.0 : value, digits);
+  return fmt::format("{:.{}g}", value / std::pow(10, *exponent), digits) + times_power(*exponent);
 }
 
 std::vector<std::string> as_numbers(const std::vector<double>& values) {
@@ -105,8 +124,9 @@ std::vector<std::string> as_numbers(const std::vector<double>& values) {
     return power_of_ten(std::abs(shown(value))).has_value();
   });
   const auto exponent = powers ? std::optional(int(std::floor(std::log10(most) + 1e-9))) : std::nullopt;
+  const int digits = digits_of(values);
   std::vector<std::string> all;
-  for (const double value : values) all.push_back(as_number(shown(value), exponent));
+  for (const double value : values) all.push_back(as_number(shown(value), exponent, digits));
   return all;
 }
 

@@ -20,11 +20,12 @@ struct ValueSlot {
 /// None: the label shows no value.
 std::optional<ValueSlot> value_slot(std::string_view text);
 
-/// A number as mathematics: up to six digits, from a million up and below 1e-4 with a power of ten:
+/// A number as mathematics: up to so many digits, from a million up and below 1e-4 with a power of ten:
 /// "7.4 \times 10^{14}". `exponent`: that of the power.
-std::string as_number(double value, std::optional<int> exponent = {});
+std::string as_number(double value, std::optional<int> exponent = {}, int digits = 6);
 
-/// The numbers of one axis: if one of them has a power of ten all have that of the largest.
+/// The numbers of one axis: if one of them has a power of ten all have that of the largest. They have as many
+/// digits as tell them apart, each to a thousandth of the least step between them.
 std::vector<std::string> as_numbers(const std::vector<double>& values);
 
 /// `text` with its slot replaced by a value. "{}" has three digits that count, those of a thousand up to a

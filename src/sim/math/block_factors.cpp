@@ -19,21 +19,24 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kSlight = 1e-12;  // of a block's own size, added to its diagonal
-constexpr double kImplied = 1e-9;  // of it: pivots as small are of rows that others imply
-constexpr double kStiff = 1e-7;    // of it: added where there are such
+// of a row's own entry on the diagonal: rows of lengths and of angles have other units
+constexpr double kSlight = 1e-12;  // added to it
+constexpr double kImplied = 1e-9;  // pivots as small are of rows that others imply
+constexpr double kStiff = 1e-7;    // added where there are such
 constexpr int kRefinements = 4;    // there
 
-// the inverse of a symmetric positive block of n rows, by Gauss and Jordan without pivoting
+// The inverse of a symmetric positive block of n rows, by Gauss and Jordan without pivoting; `part` of each
+// row's own size is added to its diagonal. Returns the least pivot as against that size.
 template <int M>
-double invert(const std::array<double, M * M>& a, int n, double least, std::array<double, M * M>& out) {
+double invert(const std::array<double, M * M>& a, int n, const double* own, double part,
+              std::array<double, M * M>& out) {
   std::array<double, M* M> m = a;
   out = {};
   double smallest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < n; ++i) out[i * M + i] = 1, m[i * M + i] += least;
+  for (int i = 0; i < n; ++i) out[i * M + i] = 1, m[i * M + i] += part * own[i];
   for (int k = 0; k < n; ++k) {
-    const double pivot = 1 / std::max(m[k * M + k], least);
-    smallest = std::min(smallest, m[k * M + k]);
+    const double pivot = 1 / std::max(m[k * M + k], part * own[k]);
+    smallest = std::min(smallest, m[k * M + k] / own[k]);
     for (int j = 0; j < n; ++j) m[k * M + j] *= pivot, out[k * M + j] *= pivot;
     for (int i = 0; i < n; ++i) {
       if (i == k) continue;
@@ -142,12 +145,15 @@ bool Blocks<M>::eliminate() {
   std::copy(diagonal_.begin(), diagonal_.end(), d.begin());
   for (int p = 0; p < int(order_.size()); ++p) {
     const int k = order_[p], n = sizes_[k];
-    double own = 0;
-    for (int i = 0; i < n; ++i) own = std::max(own, diagonal_[k][i * M + i]);
+    double own[M], most = 0;
+    for (int i = 0; i < n; ++i) own[i] = diagonal_[k][i * M + i], most = std::max(most, own[i]);
+    // what moves nothing has the size of the others
+    for (int i = 0; i < n; ++i)
+      if (!(own[i] > 0)) own[i] = most;
     const Block pivot = d[k];
     char& implied = implied_[component_[k]];
-    const double least = invert<M>(pivot, n, (implied ? kStiff : kSlight) * own, d[k]);
-    if (!implied && least < kImplied * own) implied = 1, found = true;
+    const double least = invert<M>(pivot, n, own, implied ? kStiff : kSlight, d[k]);
+    if (!implied && least < kImplied) implied = 1, found = true;
     for (int e = begin_[p]; e < begin_[p + 1]; ++e) {
       const int rows = sizes_[below_[e].block];
       const Block a = below_[e].l;
