@@ -21,8 +21,8 @@ namespace obscura::scene {
 namespace {
 
 constexpr double kLowestInPrint = 12;  // points: a figure's plot's axis
-constexpr double kNarrowest = 0.08;      // of the picture's height: a plot with all that is beside its axis
-constexpr double kLowestAxis = 0.05;  // of the picture's height: that of a plot
+constexpr double kNarrowest = 0.08;    // of the picture's height: a plot with all that is beside its axis
+constexpr double kLowestAxis = 0.05;   // of the picture's height: that of a plot
 
 // why a quantity of the whole room goes with no body
 std::string of_room(std::string_view name) {
@@ -460,10 +460,11 @@ void refuse_low_plots(const Node& top, const draw::Figure& figure, const Film& f
   const double least = ((draw::kPlotAbove + draw::kPlotBelow) * type_scale + kLowestInPrint) * 25.4 / 72;
   for (std::size_t i = 0; i < figure.plots.size(); ++i) {
     if (figure.plots[i].height >= least) continue;
-    complaints.add(Fields(tables(Fields::of(top, "figure"), "plot")[i], "figure.plot").place("height"),
-                   fmt::format("there is no room for this plot: its title and its numbers take {:.1f} mm, and "
-                               "its axis 4 at least; give it a 'height' of {:.0f}",
-                               least - kLowestInPrint * 25.4 / 72, std::ceil(least)));
+    complaints.add(
+        Fields(tables(Fields::of(top, "figure"), "plot")[i], "figure.plot").place("height"),
+        fmt::format("there is no room for this plot: its title and its numbers take {:.1f} mm, and "
+                    "its axis 4 at least; give it a 'height' of {:.0f}",
+                    least - kLowestInPrint * 25.4 / 72, std::ceil(least)));
     return;
   }
   if (film.charts.empty()) return;
@@ -474,10 +475,11 @@ void refuse_low_plots(const Node& top, const draw::Figure& figure, const Film& f
   const std::vector<double> widths = draw::Charts::widths(film.charts, aspect, foot);
   for (std::size_t i = 0; i < heights.size(); ++i) {
     if (widths[i] < kNarrowest * 1080) {
-      complaints.add(Fields(nodes[i], "film.plot").place("size"),
-                     fmt::format("there is no room for this plot: it would be {:.0f} of the picture's {} pixels "
-                                 "wide; give it a larger 'size'",
-                                 std::max(0.0, widths[i] * film.height / 1080), film.width));
+      complaints.add(
+          Fields(nodes[i], "film.plot").place("size"),
+          fmt::format("there is no room for this plot: it would be {:.0f} of the picture's {} pixels "
+                      "wide; give it a larger 'size'",
+                      std::max(0.0, widths[i] * film.height / 1080), film.width));
       return;
     }
     if (heights[i] >= kLowestAxis * 1080) continue;

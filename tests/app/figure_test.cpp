@@ -310,8 +310,8 @@ TEST_F(Figure, WordsStayOnThePage) {
 TEST_F(Figure, WordsOfAnArrowInACornerAreOnThePage) {
   OBSCURA_NEEDS(page::writes(page::Form::pdf) && installed("pdftotext"), "libcairo2-dev, poppler-utils");
   for (const auto& [place, velocity] :
-       {std::pair("[3.8, 2.8]", "[2, 2]"), std::pair("[0.2, 0.2]", "[-2, -2]"), std::pair("[0.2, 2.8]", "[-2, 2]"),
-        std::pair("[3.8, 0.2]", "[2, -2]")}) {
+       {std::pair("[3.8, 2.8]", "[2, 2]"), std::pair("[0.2, 0.2]", "[-2, -2]"),
+        std::pair("[0.2, 2.8]", "[-2, 2]"), std::pair("[3.8, 0.2]", "[2, -2]")}) {
     scene(fmt::format(R"(
 duration = 1
 [room]

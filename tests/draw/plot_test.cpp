@@ -134,8 +134,7 @@ TEST(Plot, ANarrowPlotHasSmallerTypeAndAWideAxis) {
   for (const double width : {160.0, 250.0, 400.0}) {
     Chart chart;
     chart.place = Chart::Place::right, chart.share = width / 1080;
-    const PlotArea area =
-        Charts({chart}, {plot}, palette(Theme::paper), 1, 2, {}, 0, 1).shown().front().area;
+    const PlotArea area = Charts({chart}, {plot}, palette(Theme::paper), 1, 2, {}, 0, 1).shown().front().area;
     EXPECT_GT(area.right - area.left, 0.2 * width) << width;
     List list;
     draw_plots({plot}, palette(Theme::paper), {{0, 0, width, 300}}, 3, list);

@@ -384,11 +384,10 @@ TEST(Arrows, InLineAreBesideEachOther) {
     Made made = room(8, 4.5);
     made.body(ShapeKind::box, {4, 2, 0}, 0.4);
     Marks marks;
-    for (const auto& [tail, way] : {std::pair(Vec3(4, 1.6, 0), Vec3(0, 1, 0)), std::pair(second_tail, second)})
-      marks.vectors.push_back({.quantity = Quantity::position,
-                               .at = Site{-1, tail},
-                               .to = Site{-1, tail + way},
-                               .label = ""});
+    for (const auto& [tail, way] :
+         {std::pair(Vec3(4, 1.6, 0), Vec3(0, 1, 0)), std::pair(second_tail, second)})
+      marks.vectors.push_back(
+          {.quantity = Quantity::position, .at = Site{-1, tail}, .to = Site{-1, tail + way}, .label = ""});
     List list;
     const Illustrator artist = made.depictor();
     annotate(marks, {}, made.cast, artist.colours(), artist.projection(0, made.now), made.now, list);
@@ -492,9 +491,9 @@ TEST(Rulers, HaveAllTheirNumbersAndTheirNameBelow) {
 
 /// Far from the room's origin, and at heights with powers of ten: on the page, apart, each its own.
 TEST(Rulers, LongNumbersAreWholeAndApart) {
-  for (const auto& [low, high] :
-       {std::pair(Vec3(100000, 0, 0), Vec3(100004, 3, 0)), std::pair(Vec3(-2e8, -1.6e8, 0), Vec3(2e8, 1.6e8, 0)),
-        std::pair(Vec3(0, 123456, 0), Vec3(4, 123459, 0))}) {
+  for (const auto& [low, high] : {std::pair(Vec3(100000, 0, 0), Vec3(100004, 3, 0)),
+                                  std::pair(Vec3(-2e8, -1.6e8, 0), Vec3(2e8, 1.6e8, 0)),
+                                  std::pair(Vec3(0, 123456, 0), Vec3(4, 123459, 0))}) {
     Made made = room(8, 4.5);
     made.cast.walls.clear();
     Sheet sheet{.region = Extent{low, high}, .below = kRulerBelow, .left = kRulerLeft};

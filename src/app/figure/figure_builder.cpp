@@ -263,9 +263,8 @@ Page FigureBuilder::page() const {
     const draw::Illustrator artist = depictor(cell, each);
     seen.push_back({&cell.panel->now, artist.projection(0, cell.panel->now)});
   }
-  draw::Scales scales =
-      draw::kept_whole(figure, panels_.front().cast, seen, draw::Lettering{}.arrow,
-                       draw::scales(figure, panels_.front().cast, moments, window, scale));
+  draw::Scales scales = draw::kept_whole(figure, panels_.front().cast, seen, draw::Lettering{}.arrow,
+                                         draw::scales(figure, panels_.front().cast, moments, window, scale));
   // beside the bodies' own arrows, and where the scene says it, theirs
   const draw::Scales given = given_scales(panels_.front().scene, panels_.front().cast);
   if (given.velocity > 0) scales.velocity = given.velocity;

@@ -140,7 +140,8 @@ std::string Variations::formula(std::int64_t run) const {
     const bool number = sim::parse_rational(values[k]).has_value();
     const bool whose = !alone(keys[k]);
     text += k ? ", " : "";
-    text += number ? keys[k].symbol(whose) + " = " + Variation::shown(values[k]) : '"' + keys[k].words(values[k], whose) + '"';
+    text += number ? keys[k].symbol(whose) + " = " + Variation::shown(values[k])
+                   : '"' + keys[k].words(values[k], whose) + '"';
   }
   return text;
 }

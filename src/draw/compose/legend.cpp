@@ -15,8 +15,8 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kSmall = 8.5 * kPoint;                     // em
-constexpr double kLongest = 0.34;                           // of the picture's shorter side
+constexpr double kSmall = 8.5 * kPoint;  // em
+constexpr double kLongest = 0.34;        // of the picture's shorter side
 constexpr double kLegendLine = 10 * kPoint, kKindsApart = 10 * kPoint;
 constexpr double kLegendArrow = 1.1 * kPoint / kArrowLine;  // weight at which a shaft is 1.1 pt
 
@@ -56,7 +56,7 @@ bool has_legend(const Figure& figure) {
 }
 
 double draw_legend(const Figure& figure, const Scales& scales, const Palette& colours, double scale,
-                 double left, double right, double baseline, List& list) {
+                   double left, double right, double baseline, List& list) {
   double middle = baseline - 0.24 * kSmall;
   double taken = left;  // of the line, from the left
   // the room's scale at the left

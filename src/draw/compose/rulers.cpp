@@ -61,8 +61,7 @@ double ruler_left(const Layout& layout) {
   const Rect part = seen_part(layout);
   const double up = (layout.middle.y() - part.y) / layout.scale,
                down = (part.y + part.height - layout.middle.y()) / layout.scale;
-  const std::vector<double> heights =
-      upward(layout.center.y() - down, layout.center.y() + up, part.height);
+  const std::vector<double> heights = upward(layout.center.y() - down, layout.center.y() + up, part.height);
   // the name of what is up is wider in some fonts
   const double widest_text = std::max(formula(kUpward, kRulerType, {}).width, widest(as_numbers(heights)));
   return std::max(kRulerLeft, (kOff + kTick + 1.5 * kPoint + widest_text + kInside) / kPoint);
@@ -101,8 +100,7 @@ void draw_rulers(const Layout& layout, const View& view, const Palette& colours,
   };
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double half = formula(under_them[i], kRulerType, colours.ink).width / 2 + kInside;
-    middles.push_back(
-        std::clamp(view.page({places[i], 0, 0}).x(), page_left + half, page_right - half));
+    middles.push_back(std::clamp(view.page({places[i], 0, 0}).x(), page_left + half, page_right - half));
     at_their_ticks += is_there(i);
   }
   for (std::size_t i = 0; i < places.size(); ++i) {

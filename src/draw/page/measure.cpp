@@ -251,7 +251,8 @@ Plot empty_plot(const Measured& measured, const Palette& colours, const sim::Sce
   plot.placed = std::all_of(measures.begin(), measures.end(), [](const Measure* each) {
     return each->name == "x" || each->name == "y" || each->name == "z";
   });
-  for (const Measure* each : measures) plot.negligible = std::max(plot.negligible, negligible(each->unit, cast));
+  for (const Measure* each : measures)
+    plot.negligible = std::max(plot.negligible, negligible(each->unit, cast));
   if (const Measure* other = measure(measured.against)) plot.name = over_unit(title(*other), other->unit);
   return plot;
 }

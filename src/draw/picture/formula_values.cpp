@@ -47,10 +47,10 @@ std::string spaced(std::string_view unit) {
 
 // a number with three digits that count has a power of ten from here up, and below that
 constexpr double kLarge = 999'999.5, kSmall = 1e-4;
-constexpr double kZero = 1e-9;             // of the largest number of an axis
+constexpr double kZero = 1e-9;                     // of the largest number of an axis
 constexpr int kUsualDigits = 6, kMostDigits = 15;  // of the numbers of an axis
 constexpr double kOfStep = 1e-3;                   // between two of them: how far off one is at most
-constexpr double kBetweenSamples = 0.005;  // of the range of a live value
+constexpr double kBetweenSamples = 0.005;          // of the range of a live value
 
 // the exponent of a number that has a power of ten
 std::optional<int> power_of_ten(double size) {

@@ -316,10 +316,12 @@ void ForwardDynamics<D>::piece(Integrate* integrate, State<D>& state, double t, 
   integrate(rates, t, h, d_, v_, stages);
   if (model_.integrator == Integrator::rk4 && rates.smooth()) {
     const double least = kFaintest * model_.scale;
-    note_roughness(state.limits_met, state.step, roughness({bodies_.size(), D, D, 1}, h, v_, least, stages));
-    const std::size_t spins = std::size_t(turning_), axes = std::size_t(kAngular<D>);
     note_roughness(state.limits_met, state.step,
-                   roughness({spins, axes, axes, 1, D * bodies_.size()}, h, v_, kFaintest, stages), true);
+                   roughness({bodies_.size(), D, D, 1}, h, v_, least, stages, rates.tied()));
+    const std::size_t spins = std::size_t(turning_), axes = std::size_t(kAngular<D>);
+    note_roughness(
+        state.limits_met, state.step,
+        roughness({spins, axes, axes, 1, D * bodies_.size()}, h, v_, kFaintest, stages, rates.tied()), true);
   }
 
   for (int i = 0; i < n; ++i) {

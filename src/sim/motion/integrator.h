@@ -22,6 +22,8 @@ class System {
 
   /// Whether no force in them may set in or end within a step, as those of contacts and joints do.
   virtual bool smooth() const { return true; }
+  /// Whether joints tie its bodies to each other.
+  virtual bool tied() const { return false; }
 };
 
 /// Workspace of an integrator: a row of numbers for each stage. Kept from step to step.
@@ -66,8 +68,10 @@ struct Roughness {
   double pace = 0;   // the largest size
 };
 /// `v`: the numbers as they are now. `least`: below this, in units of v, errors do not count.
+/// `tied`: they hang together, and errors count as against the fastest: what one that is slow errs by is
+/// little beside what the others have.
 Roughness roughness(const VelocityRows& rows, double h, std::span<const double> v, double least,
-                    Stages& stages);
+                    Stages& stages, bool tied = false);
 
 /// Notes a step whose ratio is above 0.001. What goes round is so from h w = .3 on in every step, and an
 /// oscillator in nearly half of them: Runge-Kutta then takes 1e-5 of its energy in a step. And whether it is

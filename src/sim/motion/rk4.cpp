@@ -47,7 +47,7 @@ void rk4(System& system, double t, double h, std::span<double> d, std::span<doub
 }
 
 Roughness roughness(const VelocityRows& rows, double h, std::span<const double> v, double least,
-                    Stages& stages) {
+                    Stages& stages, bool tied) {
   const auto k1 = stages.row(3, v.size()), k2 = stages.row(5, v.size());
   const auto k3 = stages.row(7, v.size()), k4 = stages.row(9, v.size());
   const auto look = [&](double more) {
@@ -68,7 +68,7 @@ Roughness roughness(const VelocityRows& rows, double h, std::span<const double> 
   };
   const Roughness found = look(least);
   // what others have just begun to move is told by what it does to them
-  return found.ratio > kRoughStep ? look(least + kSlowest * found.pace) : found;
+  return found.ratio > kRoughStep ? look(least + (tied ? 1 : kSlowest) * found.pace) : found;
 }
 
 void note_roughness(LimitsMet& met, std::int64_t step, const Roughness& found, bool spins) {

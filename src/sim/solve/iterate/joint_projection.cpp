@@ -7,16 +7,41 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace obscura::sim {
 
 namespace {
 
-constexpr int kRounds = 8;               // of Newton's
-constexpr int kSearches = 12;            // the same, with a search along each
-constexpr double kStride = 0.1;          // rad, and of the scene's size: farther nothing is put in a step
-constexpr double kLeastFraction = 1e-3;  // of a way, in it
-constexpr double kHardlyMore = 1e-9;     // of what the free motion has given
+constexpr std::size_t kMostTogether = 100;  // ends of one component: of more, one after another
+constexpr double kSofter = 1e-9;            // of each, so that those that say the same share it
+constexpr int kRounds = 8;                  // of Newton's
+constexpr int kSearches = 12;               // the same, with a search along each
+constexpr double kStride = 0.1;             // rad, and of the scene's size: farther nothing is put in a step
+constexpr double kLeastFraction = 1e-3;     // of a way, in it
+constexpr double kHardlyMore = 1e-9;        // of what the free motion has given
+
+// A symmetric positive matrix of n rows as L D L', in its place: L' above D
+void factorise_definite(std::vector<double>& a, std::size_t n) {
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t i = k + 1; i < n; ++i) {
+      const double l = a[i * n + k] / a[k * n + k];
+      for (std::size_t j = k + 1; j <= i; ++j) a[i * n + j] -= l * a[j * n + k];
+    }
+    for (std::size_t i = k + 1; i < n; ++i) a[k * n + i] = a[i * n + k] / a[k * n + k];
+  }
+}
+
+// x := A^-1 x by these factors
+void solve_definite(const std::vector<double>& a, std::vector<double>& x) {
+  const std::size_t n = x.size();
+  for (std::size_t k = 0; k < n; ++k)
+    for (std::size_t i = k + 1; i < n; ++i) x[i] -= a[k * n + i] * x[k];
+  for (std::size_t k = n; k-- > 0;) {
+    x[k] /= a[k * n + k];
+    for (std::size_t i = k + 1; i < n; ++i) x[k] -= a[k * n + i] * x[i];
+  }
+}
 
 }  // namespace
 
@@ -72,23 +97,75 @@ void JointSolver<D>::put_motors() {
   }
 }
 
+// Ropes and limits of a component that held to the end, together: one after another those on something light
+// would undo each other's work, and after some steps be taken for slack.
+//   K s = -C     K: their coupling, with the joints' reaction
+template <int D>
+void JointSolver<D>::put_held_ends(double h) {
+  if (active_ == 0) return;
+  for (int component = -1; component < components(); ++component) {
+    const int begin = component_first_[component + 1], end = component_first_[component + 2];
+    together_.clear();
+    for (int i = begin; i < end; ++i) {
+      const Bounded& bounded = bounded_[std::size_t(by_component_[std::size_t(i)])];
+      if (bounded.load <= upper && held_there(bounded, h) && bounded.effective_mass > 0)
+        together_.push_back(i);
+    }
+    const std::size_t n = together_.size();
+    if (n == 0 || n > kMostTogether) continue;
+    const auto bounded_at = [&](std::size_t k) -> Bounded& {
+      return bounded_[std::size_t(by_component_[std::size_t(together_[k])])];
+    };
+    coupling_.resize(n * n), offs_.resize(n);
+    for (std::size_t p = 0; p < n; ++p) {
+      for (std::size_t q = 0; q < n; ++q)
+        coupling_[p * n + q] = yields_[std::size_t(bounded_at(p).first + together_[q] - begin)];
+      coupling_[p * n + p] *= 1 + kSofter;
+    }
+    factorise_definite(coupling_, n);
+    // how far they and joints are off together, at most
+    const auto error = [&] {
+      double worst = position_error();
+      for (std::size_t p = 0; p < n; ++p) {
+        offs_[p] = -left(bounded_at(p).joint, bounded_at(p).load);
+        worst = std::max(worst, std::fabs(offs_[p]));
+      }
+      return worst;
+    };
+    begun_at_ = at_, begun_turn_ = turn_;
+    const double strayed = error(), close = 1e-15 * model_.scale;
+    double worst = strayed, before = kEndless;
+    for (int round = 0; round < kRounds && worst > close && worst <= 0.9 * before; ++round) {
+      before = worst;
+      solve_definite(coupling_, offs_);
+      for (std::size_t p = 0; p < n; ++p) shift_bounded(bounded_at(p), offs_[p]);
+      worst = error();
+    }
+    if (near() && worst <= strayed) continue;
+    at_ = begun_at_, turn_ = begun_turn_;
+    for (std::size_t p = 0; p < n; ++p) bounded_at(p).put = 0;
+  }
+}
+
 // places back onto what joints keep, and within what they let
 template <int D>
 void JointSolver<D>::project_positions(double h) {
   put_motors();
+  put_held_ends(h);
   for (std::size_t k = 0; k < active_; ++k) {
     Bounded& bounded = bounded_[k];
     if (bounded.load > upper) continue;
     const double off = left(bounded.joint, bounded.load);
     // what held to the end keeps it to both sides
-    const bool holds = holding(bounded) && std::fabs(off) <= kTaut * size(bounded.joint);
+    const bool holds = held_there(bounded, h);
     if (!holds && off >= 0) continue;
     const double strayed = position_error();
     begun_at_ = at_, begun_turn_ = turn_;
+    const double before = bounded.put;
     if (holds) {
       shift_bounded(bounded, -off * bounded.effective_mass);
       if (!near() || position_error() > strayed + std::fabs(off))
-        at_ = begun_at_, turn_ = begun_turn_, bounded.put = 0;
+        at_ = begun_at_, turn_ = begun_turn_, bounded.put = before;
       continue;
     }
     // what joints hardly let it do would throw them far: then only a part of it
@@ -271,6 +348,7 @@ bool JointSolver<D>::update_bounded(double h) {
   template double JointSolver<D>::position_error();        \
   template bool JointSolver<D>::near() const;              \
   template void JointSolver<D>::put_motors();              \
+  template void JointSolver<D>::put_held_ends(double);     \
   template void JointSolver<D>::project_positions(double); \
   template void JointSolver<D>::damped_newton();           \
   template void JointSolver<D>::finish(double);            \

@@ -59,7 +59,9 @@ class JointSolver final : public System {
   /// The system of that step: what `dynamics` has, and f with J v' + J' v = 0.
   void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
              std::span<double> v_rate) override;
-  bool smooth() const override { return false; }
+  /// Where nothing holds it that lets go again within a step.
+  bool smooth() const override { return bounded_blocks_.empty(); }
+  bool tied() const override { return true; }
 
   /// Computes the rows at the present poses.
   void compute_rows();
@@ -187,6 +189,7 @@ class JointSolver final : public System {
   static constexpr double kWithoutEnd = std::numeric_limits<double>::infinity();
   // of the scene's size: how far off joints may stay, and ropes and still be taut
   static constexpr double kPut = 1e-9, kTaut = 1e-8;
+  static constexpr double kErrs = 1e-4;  // and by how much the integrator errs in a step at most
   static constexpr double kAims = 1e-6;      // of its speed: what a motor may be off it that has it
   static constexpr double kArrives = 1e-10;  // of its size, 1/s: slower a joint stays where it is
   static constexpr double kEndless = 1e300;
@@ -265,6 +268,15 @@ class JointSolver final : public System {
   bool holding(const Bounded& bounded) const {
     return holds_[std::size_t(bounded.joint)].load == bounded.load;
   }
+  // Whether an end that held through the free motion still does: if its speed is as that left it, it is off
+  // by the integrator's error alone.
+  bool held_there(const Bounded& bounded, double h) const {
+    if (!holding(bounded)) return false;
+    const double its = size(bounded.joint),
+                 change = speed(bounded.row, at_) - holds_[std::size_t(bounded.joint)].target;
+    return std::fabs(left(bounded.joint, bounded.load)) <=
+           (h * std::fabs(change) <= kTaut * its ? kErrs : kTaut) * its;
+  }
   int bounded_row(int block) const { return factors_.first(block) + factors_.size(block) - 1; }
   void bounded_row(int block, Load load, Row<D>& row) const;
   void set_poses(const State<D>& state, double t);
@@ -295,6 +307,7 @@ class JointSolver final : public System {
   void save(const State<D>& state);
   void restore(State<D>& state) const;
   void put_motors();
+  void put_held_ends(double h);
   double position_error();
   bool near() const;
   void project_positions(double h);
@@ -392,6 +405,8 @@ class JointSolver final : public System {
   std::vector<int> component_first_;  // where each component begins there
   std::vector<double> yields_;        // of a component: the coupling of its rows with bounds
   std::vector<double> speeds_, changes_;
+  std::vector<int> together_;             // of by_component_: ends that are put together
+  std::vector<double> coupling_, offs_;  // theirs
 };
 
 }  // namespace obscura::sim
