@@ -123,7 +123,7 @@ std::vector<Key> world_rows() {
        .doc = "Steps per second.", .example = "1000"},
       {.path = "physics.integrator", .form = choice, .fallback = "\"rk4\"",
        .choices = {"rk4", "midpoint", "euler", "semi-implicit"},
-       .doc = "The integration scheme; the orders are four, two, one and one. With joints or springs the iterative solver takes substeps of 1/240 s at most: there errors follow `rate` only above that.", .example = "\"midpoint\""},
+       .doc = "The integration scheme; the orders are four, two, one and one. The iterative solver takes substeps of 1/240 s at most where joints act, and in space springs: there errors follow `rate` only above that.", .example = "\"midpoint\""},
       {.path = "physics.collision", .form = choice, .fallback = "\"contact\"",
        .choices = {"contact", "event", "handout"},
        .doc = "How collisions are treated. `contact`: forces keep bodies apart, with friction; `event`: the same, with every "

@@ -13,6 +13,7 @@
 #include <gmock/gmock.h>
 
 #include "app/run/plots.h"
+#include "app/run/variation.h"
 #include "media/png.h"
 #include "needs.h"
 #include "page/page.h"
@@ -373,6 +374,13 @@ scale_bar = true
       EXPECT_FALSE(wide > 0.5 && high > 4) << i << " " << j << "\n" << page;
     }
   }
+}
+
+TEST(Variation, NumbersOfManyDigitsAreRoundedWhereTheyAreShown) {
+  const Variation over("ball.elasticity=0:1:0.0666666666666666");
+  EXPECT_EQ(over.words(over.values[3]), "elasticity = 0.2");
+  for (const char* same : {"0.1", "1/3", "12345.678", "euler", "[1, 2, 3, 4, 5]"})
+    EXPECT_EQ(Variation::shown(same), same);
 }
 
 /// The bodies' own arrows and those that have names are of one scale.

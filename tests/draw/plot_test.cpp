@@ -219,6 +219,7 @@ TEST(Plot, NamesOffTheEndsOfTheirLinesHaveLeaders) {
 }
 
 TEST(Plot, AnAxisSaysQuantityOverUnit) {
+  EXPECT_EQ(over_unit("g_y", "m/s^2"), over_unit("g_y", "m/s²"));
   EXPECT_EQ(over_unit("E", "J"), "E / \"J\"");
   EXPECT_EQ(over_unit("v", "m/s"), "v / \"m s\"^{-1}");
   EXPECT_EQ(over_unit("a", "m/s²"), "a / \"m s\"^{-2}");

@@ -74,5 +74,16 @@ TEST(Keys, EveryExampleIsOne) {
   }
 }
 
+TEST(Keys, WhatAPathNamesHasItsUnit) {
+  EXPECT_EQ(unit_of("room.gravity.y"), key("room.gravity")->unit);
+  EXPECT_EQ(unit_of("crate.velocity.x"), "m/s");
+  EXPECT_EQ(unit_of("crate.mass"), "kg");
+  EXPECT_EQ(unit_of("s.stiffness"), "N/m");
+  EXPECT_EQ(unit_of("door.spring.stiffness"), "") << "of a hinge another than of a slider";
+  EXPECT_EQ(unit_of("ball[3].position.y"), "m");
+  for (const char* none : {"k", "x", "", "crate.warmth", "crate.friction"})
+    EXPECT_EQ(unit_of(none), "") << none;
+}
+
 }  // namespace
 }  // namespace obscura::scene

@@ -18,6 +18,7 @@
 #include "app/film/film.h"
 #include "app/film/film_page.h"
 #include "app/film/pages.h"
+#include "app/film/subtitles.h"
 #include "app/run/imported_run.h"
 #include "app/run/origin.h"
 #include "app/run/run_marks.h"
@@ -116,12 +117,17 @@ int film_under(scene::Scene scene, const Shots& shots, const Output& out, const 
   Progress progress(flags.film.progress, out.path, shots.size(), 1 / sim::value(scene.film.fps));
   const double aspect = double(scene.film.width) / scene.film.height;
   double height = scene.film.height;
+  const auto discard = [&] {
+    std::error_code none;
+    for (const std::string& left : {trial.path, captions_of(trial.path), trial.partial()})
+      std::filesystem::remove(left, none);
+    std::filesystem::remove_all(trial.parts(), none);
+  };
   for (;;) {
     scene.film.height = std::max(2, int(std::lround(height)));
     scene.film.width = std::max(2, int(std::lround(height * aspect)));
     if (const int exit = film(scene, shots, trial, options); exit != kDone) {
-      std::error_code none;
-      std::filesystem::remove(trial.partial(), none), std::filesystem::remove_all(trial.parts(), none);
+      discard();
       progress.finish(0, "interrupted: nothing was written", false);
       return exit;
     }
@@ -130,14 +136,18 @@ int film_under(scene::Scene scene, const Shots& shots, const Output& out, const 
     // bytes grow with edges and with areas
     height = std::min(height - 2, height * std::pow(kAim * most / size, 0.7));
     if (height * std::min(aspect, 1.0) < kLeast) {
-      std::filesystem::remove(trial.path);
+      discard();
       throw UsageError(
           fmt::format("--under {}: {} of it at {}x{}; fewer frames (--fps, --from, --to) take less",
                       *flags.under, bytes_text(size), scene.film.width, scene.film.height));
     }
   }
-  if (std::rename(trial.path.c_str(), out.path.c_str()) != 0)
-    throw media::Error(fmt::format("{}: cannot rename into place", out.path));
+  const auto put = [](const std::string& from, const std::string& to) {
+    if (std::rename(from.c_str(), to.c_str()) != 0)
+      throw media::Error(fmt::format("{}: cannot rename into place", to));
+  };
+  if (std::filesystem::exists(captions_of(trial.path))) put(captions_of(trial.path), captions_of(out.path));
+  put(trial.path, out.path);
   progress.finish(shots.size(),
                   fmt::format("{}: {}x{}, {}", out.path, scene.film.width, scene.film.height,
                               bytes_text(double(std::filesystem::file_size(out.path)))),

@@ -179,11 +179,12 @@ std::string Variation::name() const {
 
 std::string Variation::symbol(bool whose) const {
   static constexpr std::pair<std::string_view, const char*> kSymbols[] = {
-      {"angle", "\\theta"},  {"friction", "\\mu"},   {"elasticity", "e"}, {"mass", "m"},
-      {"stiffness", "k"},    {"rest_length", "l_0"}, {"length", "l"},     {"radius", "r"},
-      {"density", "\\rho"},  {"charge", "q"},        {"speed", "v"},      {"static_friction", "\\mu_s"},
-      {"position.x", "x"},   {"position.y", "y"},    {"position.z", "z"}, {"velocity.x", "v_x"},
-      {"velocity.y", "v_y"}, {"velocity.z", "v_z"}};
+      {"angle", "\\theta"},  {"friction", "\\mu"},   {"elasticity", "e"},  {"mass", "m"},
+      {"stiffness", "k"},    {"rest_length", "l_0"}, {"length", "l"},      {"radius", "r"},
+      {"density", "\\rho"},  {"charge", "q"},        {"speed", "v"},       {"static_friction", "\\mu_s"},
+      {"position.x", "x"},   {"position.y", "y"},    {"position.z", "z"},  {"velocity.x", "v_x"},
+      {"velocity.y", "v_y"}, {"velocity.z", "v_z"},  {"gravity.x", "g_x"}, {"gravity.y", "g_y"},
+      {"gravity.z", "g_z"}};
   static constexpr std::string_view kSections[] = {"physics", "room", "contact", "film", "look", "camera"};
   const std::string key = name();
   std::string of = path.substr(0, path.size() > key.size() ? path.size() - key.size() - 1 : 0);

@@ -228,7 +228,8 @@ std::string over_unit(const std::string& name, const std::string& unit) {
   const auto slash = unit.find('/');
   if (slash == unit.npos) return name + " / " + upright(unit);
   std::string over = unit.substr(0, slash), under = unit.substr(slash + 1), power = "-1";
-  if (under.ends_with("²")) under.resize(under.size() - std::string_view("²").size()), power = "-2";
+  for (const std::string_view square : {"²", "^2"})
+    if (under.ends_with(square)) under.resize(under.size() - square.size()), power = "-2";
   if (over == "1") over.clear();
   return name + " / " + upright((over.empty() ? "" : over + " ") + under) + "^{" + power + "}";
 }
