@@ -114,6 +114,21 @@ TEST(Plot, RoundingIsNotSpreadOverTheAxis) {
   EXPECT_LT(place.high, 100003);
 }
 
+/// A body of a kilogram that creeps, at a ten-millionth of a metre a second, has a speed and an energy.
+TEST(Plot, WhatIsSlowIsNoRounding) {
+  sim::SceneInfo cast;
+  cast.scale = 4;
+  cast.bodies.push_back({}), cast.bodies[0].mass = 1;
+  for (const auto& [name, value] :
+       {std::pair("speed", 1e-7), std::pair("kinetic", 0.5e-14), std::pair("angle", 1e-11)}) {
+    Measured measured;
+    measured.quantities = {name}, measured.bodies = {0};
+    const Plot plot = empty_plot(measured, palette(Theme::paper), cast, [](int) { return Color{}; });
+    EXPECT_LT(plot.negligible, value) << name;
+    EXPECT_GT(plot.negligible, 1e-5 * value) << name;
+  }
+}
+
 /// A plot over a key with one value has that in its middle.
 TEST(Plot, OnePointIsInTheMiddle) {
   for (const bool log : {false, true}) {

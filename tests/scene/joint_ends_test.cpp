@@ -319,20 +319,18 @@ TEST(JointEnds, BodiesOfAllSizesAreHeld) {
     for (const char* type : {"weld", "slider", "hinge"})
       for (const double size : {1e-6, 1e-4, 1.0, 1e3, 1e5}) {
         if (!space && std::string(type) == "hinge") continue;
-        const auto place = [&](double x, double y) {
-          return fmt::format("[{:.17g}, {:.17g}{}]", x * size, y * size, space ? ", 0" : "");
+        const auto vector = [&](double x, double y, double z) {
+          return fmt::format("[{:.17g}, {:.17g}{}]", x * size, y * size,
+                             space ? fmt::format(", {:.17g}", z * size) : "");
         };
         std::string text = fmt::format(
-            "duration = 1\n[room]\nwalls = \"none\"\nsize = [{0}, {0}{1}]\n[physics]\nsolver = "
-            "\"iterative\"\n",
-            fmt::format("{:.17g}", 80 * size), space ? fmt::format(", {:.17g}", 80 * size) : "");
-        text +=
-            fmt::format("[[box]]\nname = \"held\"\nmass = 1\nsize = [{:.17g}, {:.17g}{}]\nposition = {}\n",
-                        6 * size, size, space ? fmt::format(", {:.17g}", size) : "", place(30, 20));
-        text += fmt::format("[[joint]]\ntype = \"{}\"\nbetween = [0, \"room\"]\n", type);
-        text.replace(text.find("between = [0"), 12, "between = [\"held\"");
-        if (std::string(type) != "slider") text += fmt::format("at = {}\n", place(27, 20));
-        if (std::string(type) == "slider") text += fmt::format("axis = [1, 0{}]\n", space ? ", 0" : "");
+            "duration = 1\n[room]\nwalls = \"none\"\nsize = {0}\n[physics]\nsolver = \"iterative\"\n"
+            "[[box]]\nname = \"held\"\nmass = 1\nsize = {1}\nposition = {2}\n"
+            "[[joint]]\ntype = \"{3}\"\nbetween = [\"held\", \"room\"]\n",
+            vector(80, 80, 80), vector(6, 1, 1), vector(30, 20, 0), type);
+        if (std::string(type) != "slider") text += "at = " + vector(27, 20, 0) + "\n";
+        if (std::string(type) == "slider")
+          text += std::string("axis = ") + (space ? "[1, 0, 0]\n" : "[1, 0]\n");
         if (std::string(type) == "hinge") text += "axis = [0, 1, 0]\n";
         const TextRun scene(text);
         const sim::Snapshot now = scene.at(0.01);

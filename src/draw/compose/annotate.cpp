@@ -165,6 +165,7 @@ std::optional<double> Notes::past(std::optional<int> body, const Point& tail, co
   return far;
 }
 
+// Whether two arrows begin at one place.
 bool Notes::begin_together(std::size_t i, std::size_t j) const {
   return (arrows_[i].tail - arrows_[j].tail).norm() < kArrowLine * arrow_;
 }

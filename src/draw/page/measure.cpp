@@ -10,6 +10,8 @@ namespace obscura::draw {
 namespace {
 
 constexpr double kDegrees = 57.29577951308232;
+// of what words tell as zero: rounding, and that of energies, which go with the squares of speeds
+constexpr double kOfRounding = 1e-3, kOfRoundingOfSquares = 1e-6;
 
 using Now = const sim::Snapshot&;
 
@@ -252,7 +254,9 @@ Plot empty_plot(const Measured& measured, const Palette& colours, const sim::Sce
     return each->name == "x" || each->name == "y" || each->name == "z";
   });
   for (const Measure* each : measures)
-    plot.negligible = std::max(plot.negligible, negligible(each->unit, cast));
+    plot.negligible =
+        std::max(plot.negligible, (each->unit == std::string_view("J") ? kOfRoundingOfSquares : kOfRounding) *
+                                      negligible(each->unit, cast));
   if (const Measure* other = measure(measured.against)) plot.name = over_unit(title(*other), other->unit);
   return plot;
 }

@@ -20,7 +20,7 @@ class System {
   virtual void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
                      std::span<double> v_rate) = 0;
 
-  /// Whether no force in them may set in or end within a step, as those of contacts and joints do.
+  /// Whether no force in them may set in or end within a step, as those of contacts, ropes and limits do.
   virtual bool smooth() const { return true; }
   /// Whether joints tie its bodies to each other.
   virtual bool tied() const { return false; }

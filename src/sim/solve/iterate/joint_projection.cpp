@@ -14,34 +14,12 @@ namespace obscura::sim {
 namespace {
 
 constexpr std::size_t kMostTogether = 100;  // ends of one component: of more, one after another
-constexpr double kSofter = 1e-9;            // of each, so that those that say the same share it
+constexpr double kSame = 1e-9;              // of one: what is left of another that says the same
 constexpr int kRounds = 8;                  // of Newton's
 constexpr int kSearches = 12;               // the same, with a search along each
 constexpr double kStride = 0.1;             // rad, and of the scene's size: farther nothing is put in a step
 constexpr double kLeastFraction = 1e-3;     // of a way, in it
 constexpr double kHardlyMore = 1e-9;        // of what the free motion has given
-
-// A symmetric positive matrix of n rows as L D L', in its place: L' above D
-void factorise_definite(std::vector<double>& a, std::size_t n) {
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t i = k + 1; i < n; ++i) {
-      const double l = a[i * n + k] / a[k * n + k];
-      for (std::size_t j = k + 1; j <= i; ++j) a[i * n + j] -= l * a[j * n + k];
-    }
-    for (std::size_t i = k + 1; i < n; ++i) a[k * n + i] = a[i * n + k] / a[k * n + k];
-  }
-}
-
-// x := A^-1 x by these factors
-void solve_definite(const std::vector<double>& a, std::vector<double>& x) {
-  const std::size_t n = x.size();
-  for (std::size_t k = 0; k < n; ++k)
-    for (std::size_t i = k + 1; i < n; ++i) x[i] -= a[k * n + i] * x[k];
-  for (std::size_t k = n; k-- > 0;) {
-    x[k] /= a[k * n + k];
-    for (std::size_t i = k + 1; i < n; ++i) x[k] -= a[k * n + i] * x[i];
-  }
-}
 
 }  // namespace
 
@@ -99,7 +77,7 @@ void JointSolver<D>::put_motors() {
 
 // Ropes and limits of a component that held to the end, together: one after another those on something light
 // would undo each other's work, and after some steps be taken for slack.
-//   K s = -C     K: their coupling, with the joints' reaction
+//   K s = -C     K: their coupling, with the joints' reaction; of ends that say the same s of least norm
 template <int D>
 void JointSolver<D>::put_held_ends(double h) {
   if (active_ == 0) return;
@@ -116,16 +94,17 @@ void JointSolver<D>::put_held_ends(double h) {
     const auto bounded_at = [&](std::size_t k) -> Bounded& {
       return bounded_[std::size_t(by_component_[std::size_t(together_[k])])];
     };
-    coupling_.resize(n * n), offs_.resize(n);
-    for (std::size_t p = 0; p < n; ++p) {
+    coupling_.resize(n * n), offs_.resize(n), sizes_.resize(n);
+    // ways and angles have other units: each by its own size
+    for (std::size_t p = 0; p < n; ++p) sizes_[p] = std::sqrt(bounded_at(p).effective_mass);
+    for (std::size_t p = 0; p < n; ++p)
       for (std::size_t q = 0; q < n; ++q)
-        coupling_[p * n + q] = yields_[std::size_t(bounded_at(p).first + together_[q] - begin)];
-      coupling_[p * n + p] *= 1 + kSofter;
-    }
-    factorise_definite(coupling_, n);
-    // how far they and joints are off together, at most
+        coupling_[p * n + q] =
+            sizes_[p] * sizes_[q] * yields_[std::size_t(bounded_at(p).first + together_[q] - begin)];
+    ends_together_.symmetric(coupling_, int(n), kSame);
+    // how far they are off, at most
     const auto error = [&] {
-      double worst = position_error();
+      double worst = 0;
       for (std::size_t p = 0; p < n; ++p) {
         offs_[p] = -left(bounded_at(p).joint, bounded_at(p).load);
         worst = std::max(worst, std::fabs(offs_[p]));
@@ -133,15 +112,16 @@ void JointSolver<D>::put_held_ends(double h) {
       return worst;
     };
     begun_at_ = at_, begun_turn_ = turn_;
-    const double strayed = error(), close = 1e-15 * model_.scale;
-    double worst = strayed, before = kEndless;
+    const double strayed = position_error(), begun = error(), close = 1e-15 * model_.scale;
+    double worst = begun, before = kEndless;
     for (int round = 0; round < kRounds && worst > close && worst <= 0.9 * before; ++round) {
       before = worst;
-      solve_definite(coupling_, offs_);
-      for (std::size_t p = 0; p < n; ++p) shift_bounded(bounded_at(p), offs_[p]);
+      for (std::size_t p = 0; p < n; ++p) offs_[p] *= sizes_[p];
+      ends_together_.solve(offs_, offs_);
+      for (std::size_t p = 0; p < n; ++p) shift_bounded(bounded_at(p), sizes_[p] * offs_[p]);
       worst = error();
     }
-    if (near() && worst <= strayed) continue;
+    if (near() && worst <= begun && position_error() <= strayed + begun) continue;
     at_ = begun_at_, turn_ = begun_turn_;
     for (std::size_t p = 0; p < n; ++p) bounded_at(p).put = 0;
   }

@@ -11,6 +11,7 @@
 #include "sim/constraint/joints/motors.h"
 #include "sim/constraint/response.h"
 #include "sim/math/block_factors.h"
+#include "sim/math/full_rank.h"
 #include "sim/model/drives.h"
 #include "sim/model/state.h"
 #include "sim/motion/forward_dynamics.h"
@@ -405,8 +406,9 @@ class JointSolver final : public System {
   std::vector<int> component_first_;  // where each component begins there
   std::vector<double> yields_;        // of a component: the coupling of its rows with bounds
   std::vector<double> speeds_, changes_;
-  std::vector<int> together_;             // of by_component_: ends that are put together
-  std::vector<double> coupling_, offs_;  // theirs
+  std::vector<int> together_;  // of by_component_: ends that are put together
+  std::vector<double> coupling_, offs_, sizes_;
+  FullRank ends_together_;
 };
 
 }  // namespace obscura::sim
