@@ -61,9 +61,8 @@ std::vector<std::string> limit_notes(const sim::Run& run) {
   if (rough > kRoughFor * sim::value(run.rate()) &&
       rough > kRoughPart * double(met.rough.last - met.rough.first + 1))
     note(met.rough,
-         "had springs or forces swing a body faster than Runge-Kutta follows, which takes energy from it; a "
-         "higher "
-         "physics.rate helps");
+         "had springs, joints or forces swing a body faster than Runge-Kutta follows, which takes energy from "
+         "it; a higher physics.rate helps");
   return notes;
 }
 

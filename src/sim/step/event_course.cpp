@@ -10,6 +10,7 @@
 #include "sim/constraint/row.h"
 #include "sim/model/drives.h"
 #include "sim/step/events.h"
+#include "sim/step/stepper.h"
 
 namespace obscura::sim {
 

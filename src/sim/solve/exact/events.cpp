@@ -433,6 +433,7 @@ double ExactSolver<D>::tightening_time(const State<D>& state, double h, Couple& 
 template <int D>
 void ExactSolver<D>::begin_again(State<D>& state, double t) {
   restore(interval_.begun, state);
+  state.limits_met.rough = interval_.rough, state.limits_met.wildest = interval_.wildest;
   update_poses(state), pose_driven(t);
 }
 
@@ -440,6 +441,7 @@ void ExactSolver<D>::begin_again(State<D>& state, double t) {
 template <int D>
 double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, bool& cut) {
   save(state, interval_.begun);
+  interval_.rough = state.limits_met.rough, interval_.wildest = state.limits_met.wildest;
   interval_.t = t;
   interval_.velocities.resize(Eigen::Index(rows_.size()));
   for (int i = 0; i < int(rows_.size()); ++i) interval_.velocities[i] = row_velocity(i);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <span>
@@ -175,6 +176,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<ConeMode<D>> modes;               // as its stages keep them
     double slight = 0;                            // N: smaller normal forces count as none
     double loads = 0;                             // N: loads() there
+    LimitMet rough;                               // as those of the state there
+    WildestStep wildest;
   };
 
   // outcome, of the group at hand, then of the step
@@ -211,7 +214,14 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void step_group(State<D>& state, double t, double h);
   void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
              std::span<double> v_rate) override;
-  bool smooth() const override { return constraints_.empty(); }
+  // bodies that touch may roll off an edge or begin to slip in a stage; ropes and limits that hold are found
+  // anew from event to event
+  bool smooth() const override {
+    return std::none_of(constraints_.begin(), constraints_.end(), [](const Constraint& constraint) {
+      return constraint.kind == Constraint::Kind::contact;
+    });
+  }
+  bool tied() const override { return !constraints_.empty(); }
   void collect_bodies(State<D>& state);
   bool all_finite(const State<D>& state) const;
   double kinetic_energy(const State<D>& state) const;

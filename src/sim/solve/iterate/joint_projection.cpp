@@ -75,38 +75,79 @@ void JointSolver<D>::put_motors() {
   }
 }
 
-// Ropes and limits of a component that held to the end, together: one after another those on something light
-// would undo each other's work, and after some steps be taken for slack.
+// What the rows of together_ answer each other, of a component whose rows with bounds begin there.
+template <int D>
+void JointSolver<D>::couple_together(int begin) {
+  const std::size_t n = together_.size();
+  coupling_.resize(n * n), offs_.resize(n), sizes_.resize(n);
+  // ways and angles have other units: each by its own size
+  for (std::size_t p = 0; p < n; ++p) sizes_[p] = std::sqrt(together(p).effective_mass);
+  for (std::size_t p = 0; p < n; ++p)
+    for (std::size_t q = 0; q < n; ++q)
+      coupling_[p * n + q] =
+          sizes_[p] * sizes_[q] * yields_[std::size_t(together(p).first + together_[q] - begin)];
+  ends_together_.symmetric(coupling_, int(n), kSame);
+}
+
+// offs_ -> K^-1 offs_; of rows that say the same, what is of least norm
+template <int D>
+void JointSolver<D>::solve_together() {
+  for (std::size_t p = 0; p < together_.size(); ++p) offs_[p] *= sizes_[p];
+  ends_together_.solve(offs_, offs_);
+  for (std::size_t p = 0; p < together_.size(); ++p) offs_[p] *= sizes_[p];
+}
+
+// The rows of a component that are within their bounds, to their speeds at once, where that keeps them
+// within: on something light a round over them leaves each a part of what the others did.
+template <int D>
+void JointSolver<D>::solve_within(int begin, int end) {
+  together_.clear();
+  for (int i = begin; i < end; ++i) {
+    const Bounded& bounded = bounded_[std::size_t(by_component_[std::size_t(i)])];
+    if (within(bounded) && bounded.effective_mass > 0) together_.push_back(i);
+  }
+  const std::size_t n = together_.size();
+  if (n < 2 || n > kMostTogether) return;
+  couple_together(begin);
+  for (std::size_t p = 0; p < n; ++p) offs_[p] = -speeds_[std::size_t(together_[p])];
+  solve_together();
+  for (std::size_t p = 0; p < n; ++p) {
+    const Bounded& bounded = together(p);
+    const double next = bounded.impulse + offs_[p];
+    if (!(next >= bounded.least && next <= bounded.most)) return;
+  }
+  for (std::size_t p = 0; p < n; ++p) {
+    Bounded& bounded = together(p);
+    bounded.impulse += offs_[p], changes_[std::size_t(together_[p])] += offs_[p];
+    for (int j = begin; j < end; ++j)
+      speeds_[std::size_t(j)] += yields_[std::size_t(bounded.first + j - begin)] * offs_[p];
+  }
+}
+
+// Ropes and limits of a component that held to the end, together, and with `beyond` all that are beyond their
+// ends too: one after another those on something light would undo each other's work, and after some steps be
+// taken for slack.
 //   K s = -C     K: their coupling, with the joints' reaction; of ends that say the same s of least norm
 template <int D>
-void JointSolver<D>::put_held_ends(double h) {
+void JointSolver<D>::put_ends(double h, bool beyond) {
   if (active_ == 0) return;
   for (int component = -1; component < components(); ++component) {
     const int begin = component_first_[component + 1], end = component_first_[component + 2];
-    together_.clear();
+    together_.clear(), puts_.clear();
     for (int i = begin; i < end; ++i) {
       const Bounded& bounded = bounded_[std::size_t(by_component_[std::size_t(i)])];
-      if (bounded.load <= upper && held_there(bounded, h) && bounded.effective_mass > 0)
-        together_.push_back(i);
+      if (bounded.load > upper || !(bounded.effective_mass > 0)) continue;
+      if (held_there(bounded, h) || (beyond && left(bounded.joint, bounded.load) < 0))
+        together_.push_back(i), puts_.push_back(bounded.put);
     }
     const std::size_t n = together_.size();
     if (n == 0 || n > kMostTogether) continue;
-    const auto bounded_at = [&](std::size_t k) -> Bounded& {
-      return bounded_[std::size_t(by_component_[std::size_t(together_[k])])];
-    };
-    coupling_.resize(n * n), offs_.resize(n), sizes_.resize(n);
-    // ways and angles have other units: each by its own size
-    for (std::size_t p = 0; p < n; ++p) sizes_[p] = std::sqrt(bounded_at(p).effective_mass);
-    for (std::size_t p = 0; p < n; ++p)
-      for (std::size_t q = 0; q < n; ++q)
-        coupling_[p * n + q] =
-            sizes_[p] * sizes_[q] * yields_[std::size_t(bounded_at(p).first + together_[q] - begin)];
-    ends_together_.symmetric(coupling_, int(n), kSame);
+    couple_together(begin);
     // how far they are off, at most
     const auto error = [&] {
       double worst = 0;
       for (std::size_t p = 0; p < n; ++p) {
-        offs_[p] = -left(bounded_at(p).joint, bounded_at(p).load);
+        offs_[p] = -left(together(p).joint, together(p).load);
         worst = std::max(worst, std::fabs(offs_[p]));
       }
       return worst;
@@ -116,14 +157,14 @@ void JointSolver<D>::put_held_ends(double h) {
     double worst = begun, before = kEndless;
     for (int round = 0; round < kRounds && worst > close && worst <= 0.9 * before; ++round) {
       before = worst;
-      for (std::size_t p = 0; p < n; ++p) offs_[p] *= sizes_[p];
-      ends_together_.solve(offs_, offs_);
-      for (std::size_t p = 0; p < n; ++p) shift_bounded(bounded_at(p), sizes_[p] * offs_[p]);
+      solve_together();
+      for (std::size_t p = 0; p < n; ++p) shift_bounded(together(p), offs_[p]);
       worst = error();
     }
-    if (near() && worst <= begun && position_error() <= strayed + begun) continue;
-    at_ = begun_at_, turn_ = begun_turn_;
-    for (std::size_t p = 0; p < n; ++p) bounded_at(p).put = 0;
+    const bool helped = near() && worst <= begun && position_error() <= strayed + begun;
+    if (!helped) at_ = begun_at_, turn_ = begun_turn_;
+    for (std::size_t p = 0; p < n; ++p)
+      if (!helped || !held_there(together(p), h)) together(p).put = puts_[p];
   }
 }
 
@@ -131,7 +172,7 @@ void JointSolver<D>::put_held_ends(double h) {
 template <int D>
 void JointSolver<D>::project_positions(double h) {
   put_motors();
-  put_held_ends(h);
+  put_ends(h, false);
   for (std::size_t k = 0; k < active_; ++k) {
     Bounded& bounded = bounded_[k];
     if (bounded.load > upper) continue;
@@ -158,6 +199,7 @@ void JointSolver<D>::project_positions(double h) {
     // where it was far beyond its end it is put back, no more
     bounded.put = 0;
   }
+  put_ends(h, true);
   begun_at_ = at_, begun_turn_ = turn_;
   std::fill(shifts_.begin(), shifts_.end(), 0.0);
   const double close = 1e-15 * model_.scale, enough = kPut * model_.scale;
@@ -233,7 +275,7 @@ void JointSolver<D>::finish(double h) {
     push(bounded.row, 0.5 * bounded.impulse - bounded.put / h);
   }
   if (update_bounded(h)) {
-    iterate();
+    for (int component = -1; component < components(); ++component) iterate(component, true);
   } else {
     solve_positions();
     for (std::size_t r = 0; r < rows_.size(); ++r) totals_[r] += rhs_[r];
@@ -328,7 +370,10 @@ bool JointSolver<D>::update_bounded(double h) {
   template double JointSolver<D>::position_error();        \
   template bool JointSolver<D>::near() const;              \
   template void JointSolver<D>::put_motors();              \
-  template void JointSolver<D>::put_held_ends(double);     \
+  template void JointSolver<D>::couple_together(int);      \
+  template void JointSolver<D>::solve_together();          \
+  template void JointSolver<D>::solve_within(int, int);    \
+  template void JointSolver<D>::put_ends(double, bool);    \
   template void JointSolver<D>::project_positions(double); \
   template void JointSolver<D>::damped_newton();           \
   template void JointSolver<D>::finish(double);            \

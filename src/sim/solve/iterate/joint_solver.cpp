@@ -509,7 +509,7 @@ void JointSolver<D>::iterate() {
 }
 
 template <int D>
-void JointSolver<D>::iterate(int component) {
+void JointSolver<D>::iterate(int component, bool last) {
   if (component >= 0) {
     each_row(component, [&](int, int r) { rhs_[r] = targets_[r] - speed(rows_[r], at_); });
     factors_.solve(rhs_.data(), component);
@@ -524,6 +524,7 @@ void JointSolver<D>::iterate(int component) {
     const Bounded& b = bounded_[by_component_[i]];
     speeds_[i] = speed(b.row, at_) - b.target, changes_[i] = 0;
   }
+  if (last) solve_within(begin, end);
   for (int round = 0; round < kBoundedRounds; ++round) {
     for (int i = begin; i < end; ++i) {
       Bounded& b = bounded_[by_component_[i]];

@@ -60,8 +60,6 @@ class JointSolver final : public System {
   /// The system of that step: what `dynamics` has, and f with J v' + J' v = 0.
   void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
              std::span<double> v_rate) override;
-  /// Where nothing holds it that lets go again within a step.
-  bool smooth() const override { return bounded_blocks_.empty(); }
   bool tied() const override { return true; }
 
   /// Computes the rows at the present poses.
@@ -80,7 +78,7 @@ class JointSolver final : public System {
   /// Joints of different components share no moving body. Component -1: ropes between bodies without other
   /// joints.
   void iterate();
-  void iterate(int component);
+  void iterate(int component) { iterate(component, false); }
   /// One iteration for position correction: the velocities of body_motion() are displacements. Leaves the
   /// impulses as they are.
   void solve_positions();
@@ -190,7 +188,7 @@ class JointSolver final : public System {
   static constexpr double kWithoutEnd = std::numeric_limits<double>::infinity();
   // of the scene's size: how far off joints may stay, and ropes and still be taut
   static constexpr double kPut = 1e-9, kTaut = 1e-8;
-  static constexpr double kErrs = 1e-4;  // and by how much the integrator errs in a step at most
+  static constexpr double kErrs = 1e-4;      // and by how much the integrator errs in a step at most
   static constexpr double kAims = 1e-6;      // of its speed: what a motor may be off it that has it
   static constexpr double kArrives = 1e-10;  // of its size, 1/s: slower a joint stays where it is
   static constexpr double kEndless = 1e300;
@@ -261,6 +259,14 @@ class JointSolver final : public System {
   bool update_bounded(double h);
   void couple_bounded();
   void push_bounded(int component);
+  // last: none follows, so what holds is brought to rest exactly
+  void iterate(int component, bool last);
+  Bounded& together(std::size_t place) {
+    return bounded_[std::size_t(by_component_[std::size_t(together_[place])])];
+  }
+  void couple_together(int begin);
+  void solve_together();
+  void solve_within(int begin, int end);
   void shift_bounded(Bounded& bounded, double by);
   double left(int joint, Load load) const;
   double left(const Stop& stop, double t);
@@ -308,7 +314,7 @@ class JointSolver final : public System {
   void save(const State<D>& state);
   void restore(State<D>& state) const;
   void put_motors();
-  void put_held_ends(double h);
+  void put_ends(double h, bool beyond);
   double position_error();
   bool near() const;
   void project_positions(double h);
@@ -392,6 +398,8 @@ class JointSolver final : public System {
     BodySpin<D> body_spin;
   };
   std::vector<Saved> saved_;  // bodies that are stepped
+  LimitMet saved_rough_;      // and what the state had noted of them
+  WildestStep saved_wildest_;
   struct Coordinate {
     double value = 0, rate = 0;  // rad or m; a second
   };
@@ -406,8 +414,8 @@ class JointSolver final : public System {
   std::vector<int> component_first_;  // where each component begins there
   std::vector<double> yields_;        // of a component: the coupling of its rows with bounds
   std::vector<double> speeds_, changes_;
-  std::vector<int> together_;  // of by_component_: ends that are put together
-  std::vector<double> coupling_, offs_, sizes_;
+  std::vector<int> together_;  // of by_component_: rows that are solved together
+  std::vector<double> coupling_, offs_, sizes_, puts_;
   FullRank ends_together_;
 };
 

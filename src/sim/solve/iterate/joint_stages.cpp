@@ -355,7 +355,7 @@ double JointSolver<D>::strike(State<D>& state, double t) {
 
 template <int D>
 void JointSolver<D>::save(const State<D>& state) {
-  saved_.clear();
+  saved_.clear(), saved_rough_ = state.limits_met.rough, saved_wildest_ = state.limits_met.wildest;
   for (const int body : dynamics_->bodies()) {
     Saved& it = saved_.emplace_back();
     it.x = state.x[std::size_t(body)], it.v = state.v[std::size_t(body)];
@@ -368,6 +368,7 @@ void JointSolver<D>::save(const State<D>& state) {
 
 template <int D>
 void JointSolver<D>::restore(State<D>& state) const {
+  state.limits_met.rough = saved_rough_, state.limits_met.wildest = saved_wildest_;
   for (std::size_t i = 0; i < saved_.size(); ++i) {
     const int body = dynamics_->bodies()[i];
     const Saved& it = saved_[i];
