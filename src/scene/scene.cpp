@@ -319,6 +319,13 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
 
 }  // namespace
 
+Scene::Scene() = default;
+Scene::Scene(const Scene&) = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(const Scene&) = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+Scene::~Scene() = default;
+
 Scene parse(const std::string& text, const std::string& file, const std::vector<std::string>& sets,
             const RunMarks* marks) {
   Diagnostics complaints(file, sets);

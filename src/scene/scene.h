@@ -55,6 +55,14 @@ struct Golden {
 
 /// A scene, read, checked and built: its world, its look and its film.
 struct Scene {
+  // each compiled once, in scene.cpp
+  Scene();
+  Scene(const Scene&);
+  Scene(Scene&&) noexcept;
+  Scene& operator=(const Scene&);
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
+
   std::string file;               // as given
   std::string name;               // the file's stem
   std::string text;               // the file's bytes, for its hash and the origin

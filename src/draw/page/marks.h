@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -72,6 +71,14 @@ struct Interval {
 };
 
 struct Marks {
+  // each compiled once, in marks.cpp
+  Marks();
+  Marks(const Marks&);
+  Marks(Marks&&) noexcept;
+  Marks& operator=(const Marks&);
+  Marks& operator=(Marks&&) noexcept;
+  ~Marks();
+
   struct Point {
     Site at;
     std::string label;
@@ -147,18 +154,9 @@ struct Marks {
   std::vector<Path> paths;
   std::vector<Ghost> ghosts;
 
-  bool empty() const {
-    return !axes && points.empty() && vectors.empty() && angles.empty() && lengths.empty() && cones.empty() &&
-           labels.empty() && names.empty() && paths.empty() && ghosts.empty();
-  }
+  bool empty() const;
   /// Whether all of them are words at places of the room, without values: they say the same of every run.
-  bool fixed() const {
-    Marks others = *this;
-    others.labels.clear();
-    return others.empty() && std::all_of(labels.begin(), labels.end(), [](const Label& label) {
-             return label.at.body < 0 && label.quantity.empty();
-           });
-  }
+  bool fixed() const;
 };
 
 }  // namespace obscura::draw

@@ -462,6 +462,14 @@ struct When {
 /// body's index here is its index everywhere.
 template <int D>
 struct Model {
+  // each compiled once, in model.cpp
+  Model();
+  Model(const Model&);
+  Model(Model&&) noexcept;
+  Model& operator=(const Model&);
+  Model& operator=(Model&&) noexcept;
+  ~Model();
+
   Rational rate = {600, 1};  // steps per second
   Integrator integrator = Integrator::rk4;
   Collision collision = Collision::handout;

@@ -165,6 +165,14 @@ struct Made {
 /// step / rate, plus `beyond` in the copy that a frame between two steps shows.
 template <int D>
 struct State {
+  // each compiled once, in state.cpp: a state is copied in many places
+  State();
+  State(const State&);
+  State(State&&) noexcept;
+  State& operator=(const State&);
+  State& operator=(State&&) noexcept;
+  ~State();
+
   std::int64_t step = 0;
   double beyond = 0;                 // s; 0 on the trajectory
   std::vector<Vec<D>> x;             // centres of mass, m, one a body
@@ -202,7 +210,7 @@ struct State {
   // and the torque on it about its place, N m; the hash does without, as all is said by the rest
   std::vector<AngularVec<D>> joint_torques;
 
-  bool operator==(const State&) const = default;
+  bool operator==(const State&) const;
 };
 
 /// The state as 64-bit words in a fixed order, -0 as 0. State hashes are computed from them.

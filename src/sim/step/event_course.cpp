@@ -480,5 +480,7 @@ template bool Events<2>::within(const When<2>& when, const Vec<2>& x) const;
 template bool Events<3>::within(const When<3>& when, const Vec<3>& x) const;
 template void Events<2>::find_crossings(const State<2>& state, int w, double from, double to);
 template void Events<3>::find_crossings(const State<3>& state, int w, double from, double to);
+template void Events<2>::join_with_these(State<2>& state, TimeStamp at, std::vector<Due>& actions);
+template void Events<3>::join_with_these(State<3>& state, TimeStamp at, std::vector<Due>& actions);
 
 }  // namespace obscura::sim

@@ -287,8 +287,18 @@ class JointSolver final : public System {
   int bounded_row(int block) const { return factors_.first(block) + factors_.size(block) - 1; }
   void bounded_row(int block, Load load, Row<D>& row) const;
   void set_poses(const State<D>& state, double t);
+  // act(i, coordinate) for each joint with a motor that acts, at the poses at hand
   template <class Act>
-  void each_motor(Act&& act);
+  void each_motor(Act&& act) {
+    for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+      const Joint<D>& joint = model_.joints[i];
+      if (!joint.motor || broken_[i] || !moves(joint)) continue;
+      Row<D> row;
+      double value = 0;
+      free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), row, value);
+      act(i, Coordinate{value, speed(row, at_)});
+    }
+  }
   void begin_motors();
   void end_motors();
   bool has_speed(int joint, double rate, double aimed, double h) const {

@@ -380,20 +380,6 @@ void JointSolver<D>::restore(State<D>& state) const {
   }
 }
 
-// act(i, coordinate) for each joint with a motor that acts, at the poses at hand
-template <int D>
-template <class Act>
-void JointSolver<D>::each_motor(Act&& act) {
-  for (std::size_t i = 0; i < model_.joints.size(); ++i) {
-    const Joint<D>& joint = model_.joints[i];
-    if (!joint.motor || broken_[i] || !moves(joint)) continue;
-    Row<D> row;
-    double value = 0;
-    free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), row, value);
-    act(i, Coordinate{value, speed(row, at_)});
-  }
-}
-
 // the coordinates of motors where the step begins
 template <int D>
 void JointSolver<D>::begin_motors() {
