@@ -155,5 +155,40 @@ TEST(Slips, WhatNothingAcceleratesGoesOn) {
   }
 }
 
+// Where a slip would jam (its 1/m + r_x^2/I - mu |r_x r_y|/I is near or below zero), a contact that sticks
+// has other forces beside its own, without bounds: it goes on sticking, whatever taking back the step's error
+// of energy does to its velocities. A disc that rolls about a centre beside its own, and a top on a sharp
+// tip.
+TEST(Slips, WhatSticksWhereASlipWouldJamGoesOnSticking) {
+  const auto run = [](const char* mode, int rate, const std::string& rest) {
+    return TextRun(fmt::format("duration = 1\n[physics]\nrate = {}\n{}\n[room]\nwalls = \"ground\"\n{}", rate,
+                               mode, rest));
+  };
+  const std::string disc =
+      "size = [9, 4]\n[[ball]]\nname = \"b\"\nradius = 0.2\nmass = 1\ninertia = 0.003\ncenter_of_mass = "
+      "[-0.08196887957447481, -0.08096695335710483]\nfriction = 0.7\nelasticity = 0\nposition = [0, "
+      "0.2]\nangle = -96\nspin = -825.3305652896119\nvelocity = [4.177131329372834, 1.036497472036564]\n";
+  const std::string top =
+      "size = [4, 4, 4]\n[[body]]\nname = \"t\"\nshapes = [{ points = [[0, -0.2, 0], [0.05, 0, 0.05], "
+      "[-0.05, "
+      "0, 0.05], [0.05, 0, -0.05], [-0.05, 0, -0.05]] }]\nmass = 0.5\ninertia = [0.002, 0.004, "
+      "0.002]\ncenter_of_mass = [0, 0, 0]\nfriction = 1.0\nelasticity = 0\norientation = [0, 0, "
+      "-10]\nposition = [0.034729635533386066, 0.1969615506024416, 0]\nspin = [1193.9169240543583, "
+      "6771.039345523381, 0]\n";
+  for (const char* mode : {"solver = \"direct\"", "collision = \"event\"", "solver = \"iterative\""})
+    for (const int rate : {60, 240, 600}) {
+      const TextRun rolls = run(mode, rate, disc);
+      EXPECT_NEAR(rolls.at(0.4).bodies[0].spin.z(), -8.0311119, 1e-4) << mode << rate;
+      EXPECT_NEAR(rolls.at(1).energies.total(), 4.0015166, 1e-4) << mode << rate;
+      // Euler's equations of a top about a point that stays, by Runge and Kutta's scheme at small steps
+      const TextRun turns = run(mode, rate, top);
+      const double begun = turns.at(0).energies.total();
+      const sim::Snapshot end = turns.at(1);
+      EXPECT_LT((end.bodies[0].position - sim::Vec3(-0.0285919, 0.1961467, -0.0266290)).norm(), 1e-5)
+          << mode << rate;
+      EXPECT_NEAR(end.energies.total(), begun, 3e-6) << mode << rate;
+    }
+}
+
 }  // namespace
 }  // namespace obscura::scene

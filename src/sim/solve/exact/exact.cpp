@@ -22,7 +22,9 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kCreep = 1e-6;      // of sqrt(g L)
+constexpr double kCreep = 1e-6;  // of sqrt(g L)
+// of the speeds of two bodies: how much of their contact's taking back energy may change
+constexpr double kPerturbed = 1e-3;
 constexpr double kSunk = 0.1;        // of the thinnest: how far two may come into each other in one piece
 constexpr double kMostPieces = 200;  // of a step that is done roughly
 constexpr double kTiny = 1e-6;       // of a step: a cut that leads nowhere
@@ -279,6 +281,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
       collect_bodies(state);
       find_contacts(state, limits_.touching_gap);
     }
+    if (done == 0) hold_again(state);
     resolve_contact_impacts(state);
     bool cut = true;
     double length = 0;
@@ -350,6 +353,51 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   if (!progress_.rough) return;
   update_poses(state);
   for (Contact<D>& contact : outcome_.contacts) contact.gap = gap_of(contact.key, contact.gap);
+}
+
+// Contacts that stuck where the last step ended stick as this one begins, though velocities are a little
+// others: what that step won of energy has been taken from them (sim/energy/energy_guard.h). As a slip it
+// would choose another law; where bodies jam, one with forces without bounds.
+template <int D>
+void ExactSolver<D>::hold_again(State<D>& state) {
+  using Kind = typename Constraint::Kind;
+  update_poses(state);
+  collect_constraints(state);
+  scratch_.chosen.clear();
+  b_.setZero(Eigen::Index(rows_.size()));
+  const auto hold = [&](const Constraint& constraint, int rows) {
+    for (int row = constraint.first; row < constraint.first + rows; ++row)
+      scratch_.chosen.push_back(row), b_[row] = -row_velocity(row);
+  };
+  const auto swift = [&](int body) {
+    return body < 0 ? 0
+                    : std::sqrt(poses_[std::size_t(body)].v.squaredNorm()) +
+                          limits_.bounding_radius[std::size_t(body)] *
+                              std::sqrt(poses_[std::size_t(body)].w.squaredNorm());
+  };
+  double worst = 0;
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind == Kind::joint) hold(constraint, constraint.rows);
+    if (constraint.kind != Kind::contact) continue;
+    const ContactKey& key = candidates_[constraint.of].key;
+    const auto known =
+        std::lower_bound(progress_.known->begin(), progress_.known->end(), key,
+                         [](const Contact<D>& contact, const ContactKey& at) { return contact.key < at; });
+    if (known == progress_.known->end() || known->key != key || known->touching == ContactMode::open)
+      continue;
+    double off2 = 0;
+    const bool sticks = known->touching != ContactMode::slide;
+    for (int row = constraint.first; row < constraint.first + (sticks ? D : 1); ++row)
+      off2 += row_velocity(row) * row_velocity(row);
+    const double off = std::sqrt(off2);
+    if (off > kPerturbed * (swift(key.a) + swift(key.b))) continue;
+    hold(constraint, sticks ? D : 1);
+    if (sticks) worst = std::max(worst, off);
+  }
+  if (worst <= still_speed_) return;
+  find_islands();
+  solve_least_norm();
+  apply_impulses(state, false);
 }
 
 // lets the contact that ended the last interval separate, or slip, if it bears next to nothing now

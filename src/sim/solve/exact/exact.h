@@ -227,6 +227,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   double kinetic_energy(const State<D>& state) const;
   void save(const State<D>& state, Motion& motion) const;
   void restore(const Motion& motion, State<D>& state) const;
+  void hold_again(State<D>& state);
   void step_by_impulses(State<D>& state, double t, double h);
   double time_unseen(const State<D>& state) const;
   void write_contacts(State<D>& state);
