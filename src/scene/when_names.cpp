@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "scene/path.h"
+
 namespace obscura::scene {
 
 namespace {

@@ -135,5 +135,28 @@ TEST(Cut, WordsThatAreNoStateOfTheSceneAreRefused) {
   }
 }
 
+// A frame shortly after a step: by the solver for many, too, what the step has left is put back as within a
+// whole one. Its way is not a speed of a thousandth of a second, nor its force one of a nanosecond.
+TEST(Cut, ShortlyAfterAStepAllIsAsAtItsEnd) {
+  const TextRun scene(
+      "duration = 2\n[room]\nsize = [6, 4]\ngravity = [0, 0]\nwalls = \"none\"\n[physics]\nsolver = "
+      "\"iterative\"\n[[ball]]\nname = \"a\"\nradius = 0.1\nmass = 4\nposition = [4, 1.4]\nvelocity = [-2.5, "
+      "0]\nfriction = 0\nelasticity = 0\n[[box]]\nname = \"b\"\nsize = [0.3, 0.1]\nmass = 8\nposition = [3, "
+      "2]\nfriction = 0\nelasticity = 0\nspin = 70\n[[box]]\nname = \"c\"\nsize = [0.3, 0.1]\nmass = "
+      "0.2\nposition "
+      "= [2.4, 2]\nvelocity = [1.7, 0]\nspin = 280\nfriction = 0\nelasticity = 0\n[[joint]]\ntype = "
+      "\"pulley\"\nbetween = [\"a\", \"c\"]\nover = [{ body = \"b\", local = [0.1, 0.1] }]\n");
+  const sim::Snapshot at = scene.at(1.1);
+  for (const double later : {1e-9, 1e-8, 1e-6, 1e-5}) {
+    const sim::Snapshot then = scene.at(1.1 + later);
+    for (std::size_t i = 0; i < at.bodies.size(); ++i) {
+      EXPECT_LT((then.bodies[i].position - at.bodies[i].position).norm(), 5 * later + 1e-12) << later;
+      EXPECT_LT((then.bodies[i].velocity - at.bodies[i].velocity).norm(), 0.05) << later;
+    }
+    EXPECT_LT((then.joints[0].force - at.joints[0].force).norm(), 1e-9) << later;
+    for (const auto& contact : then.contacts) EXPECT_LT(contact.force.norm(), 15) << later;
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

@@ -35,5 +35,52 @@ TEST(Rest, OfAHeapInABinOfLongWalls) {
   }
 }
 
+// What begins in equilibrium stays there, however high, or heavy what lies on it, among many: a wall of 24
+// courses, a column of eighty plates, a hundred cubes of a kilogram under a lid of three tons; at few steps a
+// second and many.
+TEST(Rest, OfWhatBearsMuch) {
+  const auto sunk = [](int rate, const std::string& rest, int body, double y) {
+    const TextRun scene(
+        fmt::format("duration = 1\n[physics]\nsolver = \"iterative\"\nrate = {}\n[room]\n{}", rate, rest));
+    return y - scene.at(0.5).bodies[std::size_t(body)].position.y();
+  };
+  const auto bricks = [](const char* name, double x, double y, int count) {
+    return fmt::format(
+        "[[box]]\nname = \"{}\"\nsize = [0.48, 0.2, 0.24]\nmass = 4\nfriction = 0.6\nelasticity = "
+        "0.1\nposition = "
+        "[{}, {}, 0]\ncopies = {{ count = [{}, 12], offset = [[0.5, 0, 0], [0, 0.4, 0]] }}\n",
+        name, x, y, count);
+  };
+  for (const int rate : {60, 240}) {
+    const std::string wall = "size = [8, 8, 6]\nwalls = \"ground\"\n" + bricks("even", -1.75, 0.1, 8) +
+                             bricks("odd", -1.5, 0.3, 7);
+    EXPECT_LT(sunk(rate, wall, 179, 4.7), 1e-5) << rate;
+    const std::string plates =
+        "size = [4, 6, 4]\nwalls = \"ground\"\n[[box]]\nname = \"p\"\nsize = [0.6, 0.03, 0.6]\nfriction = "
+        "0.4\nelasticity = 0\nposition = [0, 0.015, 0]\ncopies = { count = 80, offset = [0, 0.03, 0] }\n";
+    EXPECT_LT(sunk(rate, plates, 79, 2.385), 3e-5) << rate;
+    const std::string cubes =
+        "size = [1, 3, 1]\n[[box]]\nname = \"c\"\nsize = [0.1, 0.1, 0.1]\nmass = 1\nfriction = "
+        "0.5\nelasticity = "
+        "0\nposition = [-0.204, 0.05, -0.204]\ncopies = { count = [5, 4, 5], offset = [[0.102, 0, 0], [0, "
+        "0.1, "
+        "0], [0, 0, 0.102]] }\n[[box]]\nname = \"lid\"\nsize = [0.51, 0.2, 0.51]\nmass = 3000\nfriction = "
+        "0.5\nelasticity = 0\nposition = [0, 0.5, 0]\n";
+    EXPECT_LT(sunk(rate, cubes, 100, 0.5), 5e-5) << rate;
+  }
+}
+
+// Boxes that lie in a silo six wide and sixty high do not creep into each other: what they overlap by as they
+// come to lie is pushed apart again.
+TEST(Rest, OfAHighSilo) {
+  const TextRun scene(
+      "duration = 2\n[physics]\nsolver = \"iterative\"\nrate = 600\n[room]\nsize = [1.44, 18]\n[[box]]\nname "
+      "= "
+      "\"b\"\nsize = [0.2, 0.2]\nfriction = 0.4\nelasticity = 0.1\nmass = 1\nangle = 1\nposition = [0.13, "
+      "0.15]\ncopies = { count = [6, 60], offset = [[0.21, 0.004], [0.002, 0.22]] }\n");
+  const double before = scene.at(1).energies.total();
+  EXPECT_GT(scene.at(2).energies.total(), before);
+}
+
 }  // namespace
 }  // namespace obscura::scene

@@ -9,6 +9,7 @@
 
 #include "sim/model/body_motion.h"
 #include "sim/model/incomplete.h"
+#include "sim/solve/contact_solver.h"
 #include "sim/step/archive.h"
 #include "sim/step/snapshots.h"
 
@@ -34,6 +35,12 @@ class RunOf final : public Run {
       stepper_->begin(state_);
     for (const Force<D>& force : model_.forces) called_ = called_ || force.law == Force<D>::Law::function;
     stride_ = std::max<std::int64_t>(1, std::llround(value(model_.rate) / kTrackRate));
+    iterates_ = model_.collision != Collision::handout && !solver_kind(solver(model_)).exact;
+    jointed_.assign(model_.bodies.size(), 0);
+    for (const Joint<D>& joint : model_.joints)
+      joint.each_body([&](int body) {
+        if (body >= 0) jointed_[std::size_t(body)] = 1;
+      });
   }
 
   const SceneInfo& scene_info() const override { return cast_; }
@@ -66,7 +73,7 @@ class RunOf final : public Run {
       trouble_ = trouble;
       return *trouble_;
     }
-    keep_forces();
+    keep_forces(to.fraction);
     return snapshot(model_, copy_, *stepper_, to, value(t));
   }
 
@@ -184,16 +191,28 @@ class RunOf final : public Run {
   }
 
   // Between two steps what goes on touching has the force of the last whole step: the part of a step, however
-  // short, puts right all that the last has left, which is no force.
-  void keep_forces() {
+  // short, puts right all that the last has left, which is no force. So have joints of what touches, by the
+  // solver for many; and what it finds touching anew has its impulse in the mean of a whole step.
+  void keep_forces(double fraction) {
     const std::vector<Contact<D>>& known = state_.contacts;
     std::size_t at = 0;  // both are in one order
+    bool borne = false;
     for (Contact<D>& contact : copy_.contacts) {
       if (contact.force.isZero(0)) continue;
+      borne = borne || jointed_[std::size_t(contact.key.a)] ||
+              (contact.key.b >= 0 && jointed_[std::size_t(contact.key.b)]);
       for (std::size_t looked = 0; looked < known.size() && known[at].key != contact.key; ++looked)
         at = at + 1 < known.size() ? at + 1 : 0;
-      if (known.empty() || known[at].key != contact.key) continue;
-      if (!known[at].force.isZero(0)) contact.force = known[at].force;
+      const bool held = !known.empty() && known[at].key == contact.key && !known[at].force.isZero(0);
+      if (held)
+        contact.force = known[at].force;
+      else if (iterates_)
+        contact.force *= fraction;
+    }
+    if (!iterates_ || !borne || state_.step == 0) return;
+    for (std::size_t i = 0; i < copy_.joint_forces.size() && i < state_.joint_forces.size(); ++i) {
+      if (copy_.broken[i] || state_.broken[i]) continue;
+      copy_.joint_forces[i] = state_.joint_forces[i], copy_.joint_torques[i] = state_.joint_torques[i];
     }
   }
 
@@ -290,6 +309,8 @@ class RunOf final : public Run {
   bool between_ = false;  // the last instant lay between two steps: copy_ shows it
   Track track_;
   std::vector<char> touched_;  // all false between two calls
+  std::vector<char> jointed_;  // one a body
+  bool iterates_ = false;      // whether the solver for many steps it
   std::int64_t stride_ = 1;    // steps
 };
 

@@ -58,6 +58,9 @@ void Iterative<D>::wake(StepPart<D> step) {
   foresee_speeds(step);
   closing_rates_ = closing_rates(step.h);
   substeps_ = substeps_for(closing_rates_.ruling, step.h);
+  const double whole = step_length(model_.rate);
+  part_of_step_ = step.h < (1 - 1e-9) * whole ? step.h / whole : 1;
+  least_substep_ = part_of_step_ < 1 ? whole / substeps_for(closing_rates_.ruling, whole) : 0;
   if (closing_rates_.ruling * step.h > 1.0001 * kCloser * substeps_)
     step.state.limits_met.substeps.note(step.state.step);
   notes_.begin(step.state);
@@ -199,7 +202,7 @@ void Iterative<D>::project_joints(StepPart<D> part) {
     joints_.body_motion(i) = body_motion(state, i);
     if (const int k = turning(state, i); k >= 0) joints_.turn(i) = state.turn[std::size_t(k)];
   }
-  joints_.finish(part.h);
+  joints_.finish(part.h, least_substep_);
   if (!state.work.empty()) state.work[0] += joints_.given();
   velocities_from_joints();
   begin_corrections();

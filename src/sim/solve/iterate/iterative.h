@@ -55,9 +55,10 @@ class Iterative : public ContactSolver<D> {
   /// Wakes what contacts reach; in the first step sets at rest what begins in equilibrium.
   virtual void update_sleep(StepPart<D> step) = 0;
   /// How fast what touches or may within h s closes, in widths of the narrower body, 1/s: `most` at most;
-  /// `ruling` says how many substeps the step has.
+  /// `ruling` says how many substeps the step has. In the plane, whether most are quiet.
   struct ClosingRates {
     double ruling = 0, most = 0;
+    bool quiet = false;
   };
   virtual ClosingRates closing_rates(double h) const = 0;
 
@@ -163,6 +164,8 @@ class Iterative : public ContactSolver<D> {
   AllowedOverlap allowed_overlap_;
   std::int64_t every_ = 1;               // steps between two pair searches
   int substeps_ = 1;                     // of this step
+  double part_of_step_ = 1;              // how much of a whole one it is,
+  double least_substep_ = 0;             // s: and if not all, how long its substeps would be in a whole one
   ClosingRates closing_rates_;           // at the start of the step; 0: not known yet
   std::vector<double> bounding_radius_;  // of bodies, m
   std::vector<MovingBody<D>> moving_;    // one a body, and one more that never moves, for walls

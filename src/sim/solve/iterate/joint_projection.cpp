@@ -213,7 +213,6 @@ void JointSolver<D>::project_positions(double h) {
     }
     worst = position_error();
   }
-  for (double& s : shifts_) s /= h;
   old_rows_ = rows_, begun_drive_works_ = drive_works_;
   if (worst <= enough && near()) return;
   at_.swap(begun_at_), turn_.swap(begun_turn_);
@@ -245,16 +244,18 @@ void JointSolver<D>::damped_newton() {
 }
 
 template <int D>
-void JointSolver<D>::finish(double h) {
+void JointSolver<D>::finish(double h, double least) {
   work_ = 0;
+  const double within = std::max(h, least);
   if (bodies_.empty()) return;
   for (const int i : bodies_) unprojected_[i] = at_[i].x;
   project_positions(h);
+  for (double& s : shifts_) s /= within;
   // what is put elsewhere has moved there, s / h of Rattle's: angular momentum stays
   for (std::size_t k = 0; k < active_; ++k) {
     const Bounded& bounded = bounded_[k];
     if (bounded.put == 0) continue;
-    each_push(bounded, bounded.put / h,
+    each_push(bounded, bounded.put / within,
               [&](int body, const Vec<D>& v, const AngularVec<D>& w) { at_[body].v += v, at_[body].w += w; });
   }
   compute_rows();
@@ -272,7 +273,7 @@ void JointSolver<D>::finish(double h) {
     if (bounded.impulse == 0 && bounded.put == 0) continue;
     push(bounded.row, -0.5 * bounded.impulse);
     renew(bounded);
-    push(bounded.row, 0.5 * bounded.impulse - bounded.put / h);
+    push(bounded.row, 0.5 * bounded.impulse - bounded.put / within);
   }
   if (update_bounded(h)) {
     for (int component = -1; component < components(); ++component) iterate(component, true);
@@ -376,7 +377,7 @@ bool JointSolver<D>::update_bounded(double h) {
   template void JointSolver<D>::put_ends(double, bool);    \
   template void JointSolver<D>::project_positions(double); \
   template void JointSolver<D>::damped_newton();           \
-  template void JointSolver<D>::finish(double);            \
+  template void JointSolver<D>::finish(double, double);    \
   template void JointSolver<D>::book(double);              \
   template void JointSolver<D>::renew(Bounded&);           \
   template bool JointSolver<D>::update_bounded(double)

@@ -144,7 +144,8 @@ class JointSolver final : public System {
   double given_at_end(const JointResponse& end) const { return given(end.row) + given(end); }
 
   /// After a step: projects positions onto C = 0 and velocities onto J v = 0 at the new positions.
-  void finish(double h);
+  /// `least`: s, of a step that is part of one; what earlier steps have left is put back as within so long.
+  void finish(double h, double least = 0);
   /// The work of kinematic bodies through joints, and of motors, in the step that was finished last, J.
   double given() const { return work_; }
   /// Bodies that rows with bounds have pushed, directly or through joints, since clear_pushed(), one a body;

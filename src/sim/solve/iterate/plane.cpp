@@ -99,8 +99,9 @@ void PlaneIterative::update_sleep(StepPart<D> step) {
 
 PlaneIterative::ClosingRates PlaneIterative::closing_rates(double h) const {
   double most = plane::closing_rate(batches_.data(), int(batches_.size()), poses_.data(), moving_.data(), h);
+  const bool quiet = awake_pairs_ <= kMostQuietPairs && (most < kQuiet || mostly_quiet());
   if (std::all_of(quicker_.begin(), quicker_.end(), [](double speed) { return speed == 0; }))
-    return {most, most};
+    return {most, most, quiet};
   // of what is moved, as fast as it becomes within the step
   for (const Pair& pair : pairs_.all()) {
     const double quicker = pair.b < 0 ? 0 : quicker_[pair.a] + quicker_[pair.b];
@@ -115,7 +116,24 @@ PlaneIterative::ClosingRates PlaneIterative::closing_rates(double h) const {
         most = std::max(most, closes * g.per_width[lane]);
     }
   }
-  return {most, most};
+  return {most, most, quiet};
+}
+
+// whether most points that touch, or nearly do, hardly move against each other
+bool PlaneIterative::mostly_quiet() const {
+  int all = 0, slow = 0;
+  for (const Pair& pair : pairs_.all()) {
+    if (pair.slot < 0) continue;
+    const ContactBatch& g = batches_[pair.slot / kLanes];
+    const int lane = pair.slot % kLanes;
+    for (int k = 0; k < pair.touches; ++k) {
+      const plane::TouchRow r = plane::row(g, lane, k, poses_[pair.a], poses_[pair.b]);
+      if (r.gap * g.per_width[lane] >= kNearly) continue;
+      const double passes = std::fabs(plane::normal_speed(r, moving_[pair.a], moving_[pair.b]));
+      ++all, slow += passes * g.per_width[lane] < kQuiet;
+    }
+  }
+  return slow >= kMostlyQuiet * all;
 }
 
 void PlaneIterative::report(StepPart<D> step) {
@@ -517,7 +535,7 @@ void PlaneIterative::push_out(const State<D>& state) {
     if (!joints_.empty()) joints_.solve_positions();
     for (const int k : joints_.bodies())
       set_velocity(push_[k], joints_.body_motion(k).v, joints_.body_motion(k).w);
-    project_all(corrected_share(state, span_), allowed_overlap(state));
+    project_all(part_of_step_ * corrected_share(state, span_), allowed_overlap(state));
   }
   begin_corrections();
   for (std::size_t i = 0; i < corrections_.size(); ++i) corrections_[i] = {push_[i].x, push_[i].y};

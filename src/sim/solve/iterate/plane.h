@@ -23,6 +23,7 @@ namespace obscura::sim {
 /// follow from the state, so a run cut in two is the run in one. Scratch is reused if step, poses and
 /// velocities of the state are bit for bit those that the last step left.
 class PlaneIterative final : public Iterative<2> {
+  static constexpr int kMostQuietPairs = 4000;  // of more, quiet or not, iterations end as soon
   static constexpr int D = 2;
 
  public:
@@ -39,6 +40,7 @@ class PlaneIterative final : public Iterative<2> {
   bool wake_struck(State<D>& state, double h);
   void update_sleep(StepPart<D> step) override;
   ClosingRates closing_rates(double h) const override;
+  bool mostly_quiet() const;
   void renew_contacts(StepPart<D> part) override;
   void move_unconstrained(StepPart<D> part) override;
   BodyMotion<D> begun(int body) const override;

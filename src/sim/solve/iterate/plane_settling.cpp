@@ -16,6 +16,8 @@ namespace {
 constexpr int kSettlingPairs = 20000;   // more, of unsettled pairs: pairs times iterations, at least
 constexpr int kSettlingIterations = 8;  // or as many as so many iterations of all pairs
 constexpr int kFewPairs = 300;          // accelerated
+constexpr int kQuietPairs = 80000;      // where most are quiet, as many, and accelerated
+constexpr int kQuietIterations = 400;   // or as many as so many iterations of all
 constexpr int kFewIterations = 50;      // more, of few pairs that others do not touch
 
 }  // namespace
@@ -30,7 +32,7 @@ void PlaneIterative::settle_contacts() {
 
 void PlaneIterative::settle_all() {
   const int count = int(batches_.size());
-  const bool follows = awake_pairs_ <= kFewPairs;
+  const bool quiet = closing_rates_.quiet, follows = awake_pairs_ <= kFewPairs || quiet;
   active_bodies_.settled = settled_rate(closing_rates_.most), active_bodies_.groups.clear();
   const auto activate = [&] {
     active_bodies_.bodies.assign(turns_.size() + 1, plane::ActiveBodies::kNow);
@@ -48,6 +50,7 @@ void PlaneIterative::settle_all() {
   }
   double change = 0;
   int left = std::max(kSettlingPairs, kSettlingIterations * awake_pairs_);
+  if (quiet) left = std::max(left, std::min(kQuietPairs, kQuietIterations * awake_pairs_));
   for (int pairs = 1; left > 0; left -= pairs) {
     pairs = iterate_active();
     if (pairs == 0) return;

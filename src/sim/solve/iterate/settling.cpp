@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/solve/iterate/substeps.h"
+
 namespace obscura::sim {
 
 void Settling::begin(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
@@ -31,6 +33,7 @@ void Settling::begin(std::span<const ContactConstraint<3>> contacts, std::span<c
     if (number < 0) number = int(islands.size()), islands.emplace_back();
     Island& island = islands[std::size_t(number)];
     island.contacts += pair.contacts, island.rate = std::max(island.rate, pair.rate);
+    if (pair.rate < kQuiet) island.quiet += pair.contacts;
   }
   for (int i = 0; i < n; ++i) {
     if (const int number = island_of[std::size_t(sets_.root(i))]; number >= 0 && counts(i))

@@ -16,15 +16,15 @@ struct Settling {
 
   /// Bodies that move and touch each other, directly or through others.
   struct Island {
-    int contacts = 0;
-    int budget = 0, spent = 0;  // contacts times iterations
-    double rate = 0;            // the fastest that its bodies pass each other, in widths of the narrower, 1/s
-    double settled = 0;         // widths, 1/s: smaller corrections count as none
-    bool friction = false;      // whether those of friction count
-    bool follows = false;       // whether it is accelerated by conjugate directions
-    bool open = true;           // whether it has neither settled nor spent its budget
-    bool exhausted = false;     // whether it has spent its budget and not settled
-    bool changed = false;       // whether the last iteration made larger corrections
+    int contacts = 0, quiet = 0;  // of these, those of pairs that are (sim/solve/iterate/substeps.h)
+    int budget = 0, spent = 0;    // contacts times iterations
+    double rate = 0;         // the fastest that its bodies pass each other, in widths of the narrower, 1/s
+    double settled = 0;      // widths, 1/s: smaller corrections count as none
+    bool friction = false;   // whether those of friction count
+    bool follows = false;    // whether it is accelerated by conjugate directions
+    bool open = true;        // whether it has neither settled nor spent its budget
+    bool exhausted = false;  // whether it has spent its budget and not settled
+    bool changed = false;    // whether the last iteration made larger corrections
     double change = 0, before = 0;  // by the last iterations, and those before, squared; 0: begins
     double share = 0;               // of the directions along which it goes on
     int first = 0, last = 0;        // its bodies, in `bodies`

@@ -7,6 +7,7 @@
 
 #include "sim/solve/iterate/pieces.h"
 #include "sim/solve/iterate/space.h"
+#include "sim/solve/iterate/substeps.h"
 
 namespace obscura::sim {
 
@@ -17,13 +18,15 @@ constexpr int kIslandTouches = 300;      // the least of an island
 constexpr int kFewestFollowed = 20;      // iterations: of less none are accelerated
 constexpr int kFewTouches = 500;         // of more, less in proportion, but as if
 constexpr int kSettlingRounds = 3;       // so many were of all
-constexpr int kFewExactly = 60;          // touches
-constexpr double kExactly = 1e-12;       // of how fast bodies of an island pass each other,
-constexpr int kExactTouches = 2000;      // within so many touches times iterations
-constexpr double kUneven = 50;           // masses of an island that is solved exactly, most to least
-constexpr int kShedding = 5;             // sweeps
-constexpr int kRestIterations = 400;     // iterations of an island at rest
-constexpr double kClosedGap = 1e-6;      // of the narrower body: so near it bears
+constexpr int kQuietTouches = 400000;    // of islands that are quiet so many, whatever else there is
+constexpr int kQuietRounds = 400;
+constexpr int kFewExactly = 60;       // touches
+constexpr double kExactly = 1e-12;    // of how fast bodies of an island pass each other,
+constexpr int kExactTouches = 2000;   // within so many touches times iterations
+constexpr double kUneven = 50;        // masses of an island that is solved exactly, most to least
+constexpr int kShedding = 5;          // sweeps
+constexpr int kRestIterations = 400;  // iterations of an island at rest
+constexpr double kClosedGap = 1e-6;   // of the narrower body: so near it bears
 
 int settling_budget(int touches) {
   return touches <= kFewTouches
@@ -36,15 +39,19 @@ int settling_budget(int touches) {
 // More iterations of those contacts that are not settled and of those beside them: where a column is struck
 // from below, the blow is to pass through all of it in this substep. Few go on until hardly anything changes,
 // for a while: then the order in which they are visited does not matter, and mirror images stay so. Those of
-// few are accelerated (Silcowitz, Niebe and Erleben 2010): a tower of fifty blocks sinks a quarter as far.
-// Bodies on joints are left out.
+// few, and of those that hardly move, are accelerated (Silcowitz, Niebe and Erleben 2010): a tower of fifty
+// blocks sinks a quarter as far. Bodies on joints are left out.
 void SpaceIterative::settle_contacts() {
   settling_.begin(touches_, all_, moving_, joints_.bodies());
   bool follows = false;
   const double rounds = double(settling_budget(int(touches_.size()))) / std::max(1, int(touches_.size()));
   for (Settling::Island& island : settling_.islands) {
     island.budget = std::max(int(rounds * island.contacts), kIslandTouches);
-    island.follows = island.contacts <= kFewTouches && island.budget >= kFewestFollowed * island.contacts;
+    const bool quiet = island.quiet >= kMostlyQuiet * island.contacts;
+    if (quiet)
+      island.budget = std::max(island.budget, std::min(kQuietTouches, kQuietRounds * island.contacts));
+    island.follows =
+        (quiet || island.contacts <= kFewTouches) && island.budget >= kFewestFollowed * island.contacts;
     follows = follows || island.follows;
   }
   batches_.set_islands(settling_);

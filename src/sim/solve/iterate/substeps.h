@@ -67,6 +67,11 @@ inline double settled_rate(double rate) {
   return std::max(kSettled, kShare * rate);
 }
 
+/// Widths of the narrower a second: bodies that pass each other more slowly are quiet. Where that share of
+/// all contacts is, iterations go on far longer: where forces have been found this costs nothing, and where
+/// they are not, heavy lids would sink into what bears them, and towers into themselves.
+inline constexpr double kQuiet = 1, kMostlyQuiet = 0.8;
+
 /// Islands of so many contacts at most are solved exactly where iterations do not settle them, by so many
 /// linear systems at most.
 inline constexpr int kFewSolved = 24, kSolvedSystems = 20;
@@ -76,8 +81,8 @@ inline constexpr int kFewSolved = 24, kSolvedSystems = 20;
 inline constexpr double kInTime = 1e-9;
 /// Gaps up to this, of a bounding radius, take part in an impact of the same instant.
 inline constexpr double kTogether = 1e-6;
-/// The same of a pair that overlaps, m. The overlap is an error, but for a deep one, and so is a gap some times
-/// as wide on the other side of faces that come to lie on each other. `least_gap` of the pair, m.
+/// The same of a pair that overlaps, m. The overlap is an error, but for a deep one, and so is a gap some
+/// times as wide on the other side of faces that come to lie on each other. `least_gap` of the pair, m.
 inline double closed_up_to(double bounding_radius, double least_gap) {
   constexpr double kErrors = 4, kDeep = 1e-2;
   return bounding_radius * std::clamp(kErrors * -least_gap / bounding_radius, kTogether, kDeep);
