@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "scene/scene.h"
+#include "scene/text_run.h"
 #include "sim/energy/energy.h"
 #include "sim/force/explosion.h"
 #include "sim/solve/contact_solver.h"

@@ -190,5 +190,23 @@ TEST(Slips, WhatSticksWhereASlipWouldJamGoesOnSticking) {
     }
 }
 
+// A force that begins at zero, or sets in within a step, moves what lies there without friction from then on.
+//   v = 2 (1 - cos 5 t)
+TEST(Slips, WhatNothingRubsFeelsAForceFromItsFirstInstant) {
+  for (const char* mode : {"solver = \"direct\"", "collision = \"event\"", "solver = \"iterative\""})
+    for (const bool space : {false, true})
+      for (const int rate : {30, 60, 600}) {
+        const TextRun scene(fmt::format(
+            "duration = 1\n[physics]\nrate = {}\n{}\n[room]\nsize = {}\n[[box]]\nname = \"b\"\nsize = "
+            "{}\nmass = "
+            "1\nfriction = 0\nelasticity = 0\nposition = {}\n[[force]]\nof = \"b\"\ncomponents = {}\n",
+            rate, mode, space ? "[40, 8, 40]" : "[40, 8]", space ? "[0.4, 0.2, 0.4]" : "[0.4, 0.2]",
+            space ? "[4, 0.1, 4]" : "[4, 0.1]",
+            space ? "[\"10*sin(5*t)\", \"0\", \"0\"]" : "[\"10*sin(5*t)\", \"0\"]"));
+        EXPECT_NEAR(scene.at(1).bodies[0].velocity.x(), 2 * (1 - std::cos(5.0)), 5e-7)
+            << mode << space << rate;
+      }
+}
+
 }  // namespace
 }  // namespace obscura::scene

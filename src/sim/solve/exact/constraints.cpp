@@ -535,7 +535,10 @@ void ExactSolver<D>::project_state(State<D>& state, double h, bool impacts_follo
     if (impacts_follow && constraint.kind == Kind::contact &&
         row_velocity(constraint.first) < -progress_.rest_speed)
       continue;
-    const int n = constraint.kind != Kind::contact ? constraint.rows : kind == ModeKind::slide ? 1 : D;
+    // what nothing rubs may have no slip yet, and gets one as soon as it is pushed
+    const bool slips = kind == ModeKind::slide || (kind == ModeKind::at_friction_limit &&
+                                                   blocks_[std::size_t(constraint.block)].mu == 0);
+    const int n = constraint.kind != Kind::contact ? constraint.rows : slips ? 1 : D;
     for (int i = 0; i < n; ++i) {
       const int row = constraint.first + i;
       const double off = aim(constraint).speed - row_velocity(row);

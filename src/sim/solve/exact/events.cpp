@@ -523,6 +523,8 @@ template double ExactSolver<2>::advance_to_event(State<2>&, double, double, bool
 template void ExactSolver<2>::find_contacts(const State<2>&, double);
 template double ExactSolver<3>::advance_to_event(State<3>&, double, double, bool&);
 template void ExactSolver<3>::find_contacts(const State<3>&, double);
+template double ExactSolver<2>::time_to_aims(State<2>&, double, double);
+template double ExactSolver<3>::time_to_aims(State<3>&, double, double);
 template double ExactSolver<2>::gap_of(const ContactKey&, double);
 template BodyMotion<2> ExactSolver<2>::pose_at(const State<2>&, int, double, double);
 template BodyMotion<3> ExactSolver<3>::pose_at(const State<3>&, int, double, double);

@@ -298,8 +298,11 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
       if (coming_apart()) project_state(state, 0);
       // at the friction limit nothing slips: as an equality it is sticking
       interval_.modes = modes_, interval_.loads = loads();
-      for (ConeMode<D>& mode : interval_.modes) {
-        if (mode.kind == ModeKind::at_friction_limit) mode.kind = ModeKind::stick;
+      for (std::size_t i = 0; i < interval_.modes.size(); ++i) {
+        ConeMode<D>& mode = interval_.modes[i];
+        if (mode.kind != ModeKind::at_friction_limit) continue;
+        // without friction it slips where a force sets in later
+        mode.kind = blocks_[i].mu > 0 ? ModeKind::stick : ModeKind::slide;
       }
       const double soon = time_to_aims(state, t + done, h - done);
       const double most = D > 2 ? begin_slip_directions(state, t + done, soon) : soon;
@@ -386,7 +389,7 @@ void ExactSolver<D>::hold_again(State<D>& state) {
     if (known == progress_.known->end() || known->key != key || known->touching == ContactMode::open)
       continue;
     double off2 = 0;
-    const bool sticks = known->touching != ContactMode::slide;
+    const bool sticks = known->touching != ContactMode::slide && material(key).static_friction > 0;
     for (int row = constraint.first; row < constraint.first + (sticks ? D : 1); ++row)
       off2 += row_velocity(row) * row_velocity(row);
     const double off = std::sqrt(off2);
