@@ -159,5 +159,21 @@ TEST(Cut, ShortlyAfterAStepAllIsAsAtItsEnd) {
   }
 }
 
+// Within the first step, before which there is none, what lies there bears what it weighs.
+TEST(Cut, WithinTheFirstStepWhatLiesThereHasItsWeight) {
+  for (const double part : {0.1, 0.5, 0.9}) {
+    const TextRun scene(
+        "duration = 1\n[physics]\nsolver = \"iterative\"\nrate = 60\n[room]\nsize = [4, 4]\ngravity = [0, "
+        "-10]\n[[box]]\nname = \"low\"\nsize = [0.4, 0.4]\nmass = 1\nelasticity = 0\nposition = [2, "
+        "0.2]\n[[box]]\nname = \"high\"\nsize = [0.4, 0.4]\nmass = 2\nelasticity = 0\nposition = [2.01, "
+        "0.6]\nspin = 0.01\n");
+    const sim::Snapshot now = scene.at(part / 60);
+    double floor = 0;
+    for (const auto& contact : now.contacts)
+      if (contact.wall >= 0) floor += contact.force.y();
+    EXPECT_NEAR(floor, 30, 1) << part;
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

@@ -192,7 +192,8 @@ class RunOf final : public Run {
 
   // Between two steps what goes on touching has the force of the last whole step: the part of a step, however
   // short, puts right all that the last has left, which is no force. So have joints of what touches, by the
-  // solver for many; and what it finds touching anew has its impulse in the mean of a whole step.
+  // solver for many; and what it finds touching anew has its impulse in the mean of a whole step. Before the
+  // first all is new.
   void keep_forces(double fraction) {
     const std::vector<Contact<D>>& known = state_.contacts;
     std::size_t at = 0;  // both are in one order
@@ -206,7 +207,7 @@ class RunOf final : public Run {
       const bool held = !known.empty() && known[at].key == contact.key && !known[at].force.isZero(0);
       if (held)
         contact.force = known[at].force;
-      else if (iterates_)
+      else if (iterates_ && state_.step > 0)
         contact.force *= fraction;
     }
     if (!iterates_ || !borne || state_.step == 0) return;

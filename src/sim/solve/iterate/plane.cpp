@@ -119,7 +119,7 @@ PlaneIterative::ClosingRates PlaneIterative::closing_rates(double h) const {
   return {most, most, quiet};
 }
 
-// whether most points that touch, or nearly do, hardly move against each other
+// whether at most points that touch, or nearly do, bodies hardly close or part, however they slide
 bool PlaneIterative::mostly_quiet() const {
   int all = 0, slow = 0;
   for (const Pair& pair : pairs_.all()) {

@@ -67,9 +67,10 @@ inline double settled_rate(double rate) {
   return std::max(kSettled, kShare * rate);
 }
 
-/// Widths of the narrower a second: bodies that pass each other more slowly are quiet. Where that share of
-/// all contacts is, iterations go on far longer: where forces have been found this costs nothing, and where
-/// they are not, heavy lids would sink into what bears them, and towers into themselves.
+/// Widths of the narrower a second: bodies that pass each other more slowly, in the plane that close or part
+/// so, are quiet. Where that share of all contacts is, iterations go on far longer: where forces have been
+/// found this costs nothing, and where they are not, heavy lids would sink into what bears them, and towers
+/// into themselves.
 inline constexpr double kQuiet = 1, kMostlyQuiet = 0.8;
 
 /// Islands of so many contacts at most are solved exactly where iterations do not settle them, by so many
