@@ -287,7 +287,7 @@ TEST_P(EitherSolver, DiscsMeetAside) {
 
 // a block on a spring, rubbed dry: every half swing takes 2 mu m g / k of it, until it stays
 TEST_P(EitherSolver, ARubbedSpringLosesEvenly) {
-  const double k = 50, mu = 0.1, begun = 1, loses = 2 * mu * kG / k;
+  const double k = 50, mu = 0.1, begun = 1, loses = 2 * mu * kG / k, h = 1.0 / 600;
   World<2> world = touching_room();
   world.model.solver = GetParam();
   add_floor(world, mu);
@@ -295,9 +295,11 @@ TEST_P(EitherSolver, ARubbedSpringLosesEvenly) {
   add_spring(world, {0, {0, 0}}, {-1, {-3, 0.1}}, k, 3);
   rub(world, mu);
   double x = begun;
-  while (std::fabs(x) > loses / 2) x = -(x > 0 ? x - loses : x + loses);
+  int turns = 0;
+  for (; std::fabs(x) > loses / 2; ++turns) x = -(x > 0 ? x - loses : x + loses);
   const State<2> now = stepped(world, 600 * 15);
-  EXPECT_NEAR(now.x[0].x(), x, GetParam() == Solver::direct ? 1e-9 : 1e-5);
+  // by iterations friction turns half a step late in the mean: 2 mu g too much for that long
+  EXPECT_NEAR(now.x[0].x(), x, GetParam() == Solver::direct ? 1e-9 : turns * 2 * mu * kG * (h / 2) * (h / 2));
   EXPECT_LT(now.v[0].norm(), 1e-9);
 }
 

@@ -64,6 +64,31 @@ typename ForwardDynamics<D>::Hold ForwardDynamics<D>::hold(const State<D>& state
   return {-1, -1, -1, at.x + at.arm(end.local)};
 }
 
+// act(body) of the bodies with a spring, those that the mouse holds, and those awake that the ground brakes
+// or a force pushes
+template <int D>
+template <class Act>
+void ForwardDynamics<D>::each_forced(const State<D>& state, const Act& act) const {
+  for (const Spring<D>& spring : model_.springs) act(spring.a.body), act(spring.b.body);
+  for (const int i : sprung_)
+    act(model_.joints[std::size_t(i)].a.body), act(model_.joints[std::size_t(i)].b.body);
+  for (const Grip<D>& grip : state.grips) act(grip.body);
+  for (int body = 0; body < int(member_.size()); ++body) {
+    const bool pushed = model_.bodies[body].ground_drag != 0 ||
+                        (forces_.push(body) && !(leaves_flying_ && forces_.flying().flies(body)));
+    if (pushed && (state.frozen.empty() || !state.frozen[body])) act(body);
+  }
+}
+
+template <int D>
+void ForwardDynamics<D>::mark_forced(const State<D>& state, std::vector<char>& forced) const {
+  forced.assign(member_.size(), blasting(state));
+  each_forced(state, [&](int body) {
+    if (body >= 0) forced[std::size_t(body)] = 1;
+  });
+  for (std::size_t i = 0; i < forced.size(); ++i) forced[i] = forced[i] || model_.bodies[i].drag != 0;
+}
+
 template <int D>
 void ForwardDynamics<D>::gather(const State<D>& state, bool all_awake, std::span<const int> also) {
   const Subset all{numbers_[0], numbers_[1], numbers_[2]};
@@ -78,20 +103,11 @@ void ForwardDynamics<D>::gather(const State<D>& state, bool all_awake, std::span
     }
     if (same) return;
   }
-  // bodies with a spring, those that the mouse holds, and those that the ground brakes or a force pushes
   for (const int body : all_) member_[body] = -1;
   const auto mark = [&](int body) {
     if (body >= 0 && !model_.bodies[body].fixed && !model_.bodies[body].linked) member_[body] = 0;
   };
-  for (const Spring<D>& spring : model_.springs) mark(spring.a.body), mark(spring.b.body);
-  for (const int i : sprung_)
-    mark(model_.joints[std::size_t(i)].a.body), mark(model_.joints[std::size_t(i)].b.body);
-  for (const Grip<D>& grip : state.grips) mark(grip.body);
-  for (int body = 0; body < int(member_.size()); ++body) {
-    const bool pushed = model_.bodies[body].ground_drag != 0 ||
-                        (forces_.push(body) && !(leaves_flying_ && forces_.flying().flies(body)));
-    if (pushed && (state.frozen.empty() || !state.frozen[body])) mark(body);
-  }
+  each_forced(state, mark);
   for (const int body : also) {
     if (state.frozen.empty() || !state.frozen[body]) mark(body);
   }
@@ -189,6 +205,15 @@ void ForwardDynamics<D>::gather_marked(const State<D>& state, const Subset& of) 
   d_.resize(n), v_.resize(n), d_rate_.resize(n), v_rate_.resize(n);
 }
 
+template <int D>
+void ForwardDynamics<D>::bear(const State<D>& state, std::span<const PersistentContact<D>> contacts) {
+  bearing_.clear();
+  for (const PersistentContact<D>& contact : contacts) {
+    const PersistentTie tie{contact, joint_side(state, contact.a), joint_side(state, contact.b)};
+    if (tie.a.member >= 0 || tie.b.member >= 0) bearing_.push_back(tie);
+  }
+}
+
 // the tied bodies of a state as d = 0 and v
 template <int D>
 void ForwardDynamics<D>::load(const State<D>& state) {
@@ -277,7 +302,7 @@ void ForwardDynamics<D>::step(Integrate* integrate, State<D>& state, double t, d
                               System* with) {
   work_ = 0;
   if (all_.empty()) return;
-  if (flying_ && !with && !blasting(state)) return fly(integrate, state, t, h, stages);
+  if (flying_ && !with && bearing_.empty() && !blasting(state)) return fly(integrate, state, t, h, stages);
   posed_ = with != nullptr;
   System& rates = with ? *with : *this;
   if (!passages_.any()) return go(integrate, state, t, h, stages, rates);
@@ -429,7 +454,8 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
 
   // poses at this stage, where anything asks for them, and the torque-free rotation
   const bool pushed =
-      posed_ || !(ties_.empty() && joint_ties_.empty() && acting_.empty() && held_.empty()) || forces_.any();
+      posed_ || forces_.any() ||
+      !(ties_.empty() && joint_ties_.empty() && bearing_.empty() && acting_.empty() && held_.empty());
   for (int i = 0; i < n; ++i) {
     stances_[i].x = x_[i] + Eigen::Map<const Vec<D>>(d.data() + D * i);
     stances_[i].v = Eigen::Map<const Vec<D>>(v.data() + D * i);
@@ -470,6 +496,12 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
     if (tie.b.drive >= 0) power += force.dot(b.velocity);
   }
   for (const JointTie& tie : joint_ties_) power += push_joint(tie, v_rate);
+  for (const PersistentTie& tie : bearing_) {
+    const BodyMotion<D>&a = motion_of(tie.a), &b = motion_of(tie.b);
+    const auto [force, point] = tie.contact.at(a, b);
+    if (tie.a.member >= 0) push(tie.a.member, {moment<D>(point - a.x, force), force}, v_rate);
+    if (tie.b.member >= 0) push(tie.b.member, {moment<D>(b.x - point, force), -force}, v_rate);
+  }
   for (const int explosion : acting_) {
     for (int i = 0; i < int(all_.size()); ++i)
       push(i, blasts_.push(model_.explosions[explosion], all_[i], stances_[i]), v_rate);

@@ -12,6 +12,7 @@
 #include "sim/model/path.h"
 #include "sim/motion/forced_flight.h"
 #include "sim/motion/integrator.h"
+#include "sim/motion/persistent_contact.h"
 #include "sim/multibody/chains.h"
 
 namespace obscura::sim {
@@ -50,6 +51,12 @@ class ForwardDynamics final : public System {
   void gather(const State<D>& state, bool all_awake = false, std::span<const int> also = {});
   /// The same for a part of the model: all else stays out of it.
   void gather(const State<D>& state, const Subset& of);
+
+  /// Marks those with springs and drag, and those that hands, forces and explosions act on: what moves them
+  /// may depend on how they move.
+  void mark_forced(const State<D>& state, std::vector<char>& forced) const;
+  /// Contacts whose forces act on the gathered bodies too, until the next call; to be called after gather().
+  void bear(const State<D>& state, std::span<const PersistentContact<D>> contacts);
 
   bool has(int body) const { return member_[body] >= 0; }
   const std::vector<int>& bodies() const { return bodies_; }
@@ -115,6 +122,10 @@ class ForwardDynamics final : public System {
     int joint;
     JointSide a, b;
   };
+  struct PersistentTie {
+    PersistentContact<D> contact;
+    JointSide a, b;
+  };
   // a coupled body that the ground brakes
   struct Braked {
     int member;
@@ -126,6 +137,8 @@ class ForwardDynamics final : public System {
   };
 
   Hold hold(const State<D>& state, const End<D>& end) const;
+  template <class Act>
+  void each_forced(const State<D>& state, const Act& act) const;
   void gather_marked(const State<D>& state, const Subset& of);
   void load(const State<D>& state);
   int pieces(const State<D>& state, double h) const;
@@ -155,6 +168,7 @@ class ForwardDynamics final : public System {
   std::vector<Tie> ties_;        // springs in order, then mice in order
   std::vector<int> sprung_;      // joints with a spring
   std::vector<JointTie> joint_ties_;
+  std::vector<PersistentTie> bearing_;
   bool ever_ = false, leaves_flying_ = false;
   bool only_forces_ = false, flying_ = false;  // nothing else of the model ties; all that is gathered flies
   Blasts<D> blasts_;

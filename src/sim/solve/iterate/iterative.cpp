@@ -34,6 +34,9 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
       every_(std::max<std::int64_t>(1, std::llround(value(model.rate) / kPairSearches))),
       moving_(model.bodies.size() + 1) {
   for (const Body<D>& body : model.bodies) bounding_radius_.push_back(bounding_radius(body.shape));
+  varies_ =
+      dynamics_.ever() || !smooth() ||
+      std::any_of(model.bodies.begin(), model.bodies.end(), [](const auto& body) { return body.drag != 0; });
   const double h = 1 / value(model.rate);
   substeps_ = substeps_for(0, h);
   restitution_threshold_ = 2 * h / substeps_ * g_ + 1e-9 * model.scale;
@@ -78,6 +81,45 @@ void Iterative<D>::move_free(StepPart<D> part) {
   joints_.compute_rows();
   velocities_to_joints();
   joints_.keep_row_speeds();
+  // what contacts gave of these, to be found anew
+  for (const int i : joints_.bodies()) {
+    if (borne_.empty() || !moves(i) || !dynamics_.has(i)) continue;
+    MovingBody<D>& m = moving_[std::size_t(i)];
+    const Twist<D>& its = borne_[std::size_t(i)];
+    set_velocity(m, velocity(m) - part.h * its.v, spin(m) - part.h * its.w);
+  }
+}
+
+template <int D>
+void Iterative<D>::begin_bearing(const State<D>& state) {
+  bearing_.clear();
+  dynamics_.mark_forced(state, forced_);
+  if (!smooth()) forced_.assign(forced_.size(), 1);
+  // and what hangs together with them
+  for (int k = 0; k < joints_.components(); ++k) {
+    const std::span<const int> members = joints_.members(k);
+    const auto forced = [&](int body) { return forced_[std::size_t(body)] != 0; };
+    if (std::none_of(members.begin(), members.end(), forced)) continue;
+    for (const int body : members) forced_[std::size_t(body)] = 1;
+  }
+}
+
+template <int D>
+void Iterative<D>::find_borne(const State<D>& state) {
+  borne_.clear();
+  if (bearing_.empty()) return;
+  borne_.resize(model_.bodies.size());
+  for (const PersistentContact<D>& contact : bearing_) {
+    for (const auto& [body, sign] : {std::pair{contact.a, 1.0}, std::pair{contact.b, -1.0}}) {
+      if (body < 0 || !moves(body)) continue;
+      const BodyMotion<D> at = body_motion(state, body);
+      const Vec<D> force = sign * contact.force;
+      Twist<D>& its = borne_[std::size_t(body)];
+      its.v += force / model_.bodies[std::size_t(body)].mass;
+      its.w += angular_response<D>(model_.bodies[std::size_t(body)], at.room_from_body,
+                                   moment<D>(contact.point - at.x, force));
+    }
+  }
 }
 
 template <int D>

@@ -131,6 +131,18 @@ class Iterative : public ContactSolver<D> {
     return std::sqrt(velocity(m).squaredNorm()) +
            bounding_radius_[std::size_t(body)] * std::sqrt(spin(m).squaredNorm());
   }
+  /// Whether the scheme sees accelerations as linear in time; if not, it leads what bears aside.
+  bool smooth() const {
+    return model_.integrator == Integrator::rk4 || model_.integrator == Integrator::midpoint;
+  }
+  /// Begins bearing_, the contacts of bodies that forces act on, and of what joints tie to these: what moves
+  /// them may depend on how they move.
+  void begin_bearing(const State<D>& state);
+  bool bears(int a, int b) const {
+    return forced_[std::size_t(a)] || (b >= 0 && b < int(forced_.size()) && forced_[std::size_t(b)]);
+  }
+  /// What the forces of bearing_ give to each body, into borne_.
+  void find_borne(const State<D>& state);
   bool wake_near_driven(StepPart<D> step, double span);
   /// How far the i-th kinematic body may be, within h s from t, from where its velocity at t takes it, m.
   double farther(int i, double t, double h);
@@ -157,7 +169,11 @@ class Iterative : public ContactSolver<D> {
   Sleep<D> sleep_;
   WarmStart<D> warm_start_;
   Stages stages_;
-  std::vector<char> carries_;    // one a body: kinematic or with a belt; empty: there are none
+  bool varies_ = false;                        // what moves bodies depends on how they move
+  std::vector<PersistentContact<D>> bearing_;  // of the last substep, if it does
+  std::vector<char> forced_;                   // one a body: see begin_bearing()
+  std::vector<Twist<D>> borne_;                // one a body, m/s^2 and rad/s^2; empty: there are none
+  std::vector<char> carries_;                  // one a body: kinematic or with a belt; empty: there are none
   std::vector<double> quicker_;  // one a body, m/s: how much faster the step moves it; empty: none are moved
   double g_ = 0;
   double restitution_threshold_ = 0;  // m/s: slower approaches do not bounce

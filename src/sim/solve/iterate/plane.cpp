@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/motion/free_motion.h"
 #include "sim/solve/iterate/endless_impacts.h"
 #include "sim/solve/iterate/substeps.h"
 
@@ -198,14 +197,6 @@ void PlaneIterative::renew_contacts(StepPart<D> part) {
     pairs_.renew(old, state, poses_);
     write_lane(pair, state);
   }
-}
-
-void PlaneIterative::move_unconstrained(StepPart<D> part) {
-  if (part.substep == 0) integrate_unconstrained(part.state, part.t, substeps_ * part.h);
-  share_free_motion(part);
-  move_driven(part);
-  find_drifts(part.h);
-  if (!joints_.empty()) integrate_jointed(part);
 }
 
 BodyMotion<2> PlaneIterative::begun(int body) const {
@@ -420,97 +411,6 @@ bool PlaneIterative::gather(const State<D>& state) {
     poses_[i].c = sc.cos, poses_[i].s = sc.sin, turns_[i] = turn;
   }
   return known;
-}
-
-// gain_ and bend_: how each body would move in the step without contacts and joints, by the scene's
-// integrator
-void PlaneIterative::integrate_unconstrained(State<D>& state, double t, double h) {
-  const int n = int(turns_.size()), still = n - int(state.turn.size());
-  const double gx = model_.gravity[0], gy = model_.gravity[1];
-  for (int i = 0; i < n; ++i) {
-    // of what sleeps too: it may wake within the step
-    if (fixed_[i]) {
-      gain_[i] = bend_[i] = {};
-      continue;
-    }
-    const FreeStep by = free_step(model_.integrator, drag_ ? -h * model_.bodies[i].drag * light_[i].im : 0);
-    gain_[i] = {moving_[i].x * by.p + h * by.q * gx, moving_[i].y * by.p + h * by.q * gy, 0, 0};
-    const double u = by.u - 1 - 0.5 * by.p, r = by.r - 0.5 * by.q;
-    bend_[i] = {h * (moving_[i].x * u + h * r * gx), h * (moving_[i].y * u + h * r * gy), 0, 0};
-  }
-
-  // springs and hands; with joints in each substep
-  if (!dynamics_.ever() || !joints_.empty()) return;
-  const std::vector<int>& bodies = dynamics_.bodies();
-  stages_.reserve(std::size_t(dynamics_.size()));
-  dynamics_.step(integrate(model_.integrator), state, t, h, stages_);
-  if (!state.work.empty()) state.work[0] += dynamics_.work();
-  for (const int i : bodies) {
-    const Motion& v = moving_[i];
-    if (v.im > 0) {
-      Motion &gain = gain_[i], &bend = bend_[i];
-      gain.x = state.v[i][0] - v.x, gain.y = state.v[i][1] - v.y;
-      bend.x = state.x[i][0] - poses_[i].x - h * (v.x + 0.5 * gain.x);
-      bend.y = state.x[i][1] - poses_[i].y - h * (v.y + 0.5 * gain.y);
-      if (i >= still) {
-        gain.w = state.spin[i - still][0] - v.w;
-        bend.w = state.turn[i - still][0] - turns_[i] - h * (v.w + 0.5 * gain.w);
-      }
-    }
-    state.x[i] = {poses_[i].x, poses_[i].y}, state.v[i] = {v.x, v.y};
-    if (i >= still) state.turn[i - still][0] = turns_[i], state.spin[i - still][0] = v.w;
-  }
-}
-
-// dv_ and dx_ of bodies on joints, and of those that springs, hands and forces act on, in a substep
-void PlaneIterative::integrate_jointed(StepPart<D> part) {
-  State<D>& state = part.state;
-  const int still = int(turns_.size() - state.turn.size());
-  dynamics_.gather(state, false, joints_.bodies());
-  stages_.reserve(std::size_t(dynamics_.size()));
-  poses_to_joints();
-  const double work = joints_.step(dynamics_, integrate(model_.integrator), state, part.t, part.h, stages_);
-  if (!state.work.empty()) state.work[0] += work;
-  for (const int i : dynamics_.bodies()) {
-    const Motion o = old_[i];
-    if (Motion& v = moving_[i]; v.im > 0) {
-      v.x = state.v[i][0], v.y = state.v[i][1];
-      Motion &dv = dv_[i], &dx = dx_[i];
-      dx.x = state.x[i][0] - poses_[i].x, dx.y = state.x[i][1] - poses_[i].y;
-      if (i >= still) v.w = state.spin[i - still][0], dx.w = state.turn[i - still][0] - turns_[i];
-      dv = {v.x - o.x, v.y - o.y, v.w - o.w, 0};
-    }
-    state.x[i] = {poses_[i].x, poses_[i].y}, state.v[i] = {o.x, o.y};
-    if (i >= still) state.turn[i - still][0] = turns_[i], state.spin[i - still][0] = o.w;
-  }
-}
-
-// dv_ and dx_: the part of gain_ and bend_ in a substep. `bend` comes of an acceleration that changes within
-// the step. Schemes of second order and more see the acceleration as linear in time, so that `bend` is in the
-// velocities of the substeps too, and contacts know of it. Of n substeps the k-th (from 0) has
-//   dv = gain / n - 12 bend / (n h) ((k + 1/2) / n - 1/2),   dx = h v / n + h dv / 2n + bend / n^3
-// with h of the whole step.
-void PlaneIterative::share_free_motion(StepPart<D> part) {
-  const bool smooth = model_.integrator == Integrator::rk4 || model_.integrator == Integrator::midpoint;
-  const double h = part.h, fraction = 1 / double(substeps_), half = 0.5 * h;
-  const double late = smooth ? -12 * fraction / h * fraction * ((part.substep + 0.5) * fraction - 0.5) : 0;
-  const double bends = smooth ? fraction * fraction * fraction : fraction;
-  each(workers(), int(turns_.size()), kBodyPiece, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      Motion &v = moving_[i], &dv = dv_[i];
-      const Motion &gain = gain_[i], &bend = bend_[i];
-      if (v.im == 0) {
-        old_[i] = v = dv = dx_[i] = {};
-        continue;
-      }
-      old_[i] = v;
-      dv = {fraction * gain.x + late * bend.x, fraction * gain.y + late * bend.y,
-            fraction * gain.w + late * bend.w, 0};
-      dx_[i] = {h * v.x + (half * dv.x + bends * bend.x), h * v.y + (half * dv.y + bends * bend.y),
-                h * v.w + (half * dv.w + bends * bend.w), 0};
-      v.x += dv.x, v.y += dv.y, v.w += dv.w;
-    }
-  });
 }
 
 void PlaneIterative::moved_by_joints(const State<D>& state, int body) {

@@ -104,6 +104,7 @@ class PlaneIterative final : public Iterative<2> {
   void find_few();
   double squared_change() const;
   void solve_together(std::span<const std::pair<int, int>> lanes);
+  void find_bearing(const State<D>& state);
   void integrate_unconstrained(State<D>& state, double t, double h);
   void share_free_motion(StepPart<D> part);
   void integrate_jointed(StepPart<D> part);
@@ -137,8 +138,9 @@ class PlaneIterative final : public Iterative<2> {
   std::vector<double> turns_;               // the angles of poses_, rad
   std::vector<double> ii_;                  // 1/(kg m^2); 0: asleep or fixed
   std::vector<Motion> old_;                 // moving_ at the start of the substep
-  // Of the whole step without contacts: the change of velocity, and of the displacement what exceeds h times
-  // the mean velocity
+  bool apart_ = false;                      // each substep of this step is integrated by itself
+  // Of the whole step, or of the substep, without contacts: the change of velocity, and of the displacement
+  // what exceeds h times the mean velocity
   std::vector<Motion> gain_, bend_;
   std::vector<Motion> dv_, dx_;  // of the substep without contacts: changes of velocity and of pose
   std::vector<Motion> push_;     // displacements by push_out()

@@ -222,6 +222,13 @@ class SpaceIterative final : public Iterative<3> {
   }
   Vec<D> belt(const ContactConstraint& touch) const;
   Vec<D> drift(int touch, const State<D>& state, double h) const;
+  void find_bearing(const State<D>& state);
+  bool gives(int body) const {
+    return !borne_.empty() && !inactive_[std::size_t(body)] && dynamics_.has(body);
+  }
+  double leads() const;
+  void gather_bodies(const State<D>& state);
+  void take_out_contacts(State<D>& state, double h);
   double integrate_step(StepPart<D> part);
   void share_free_motion(State<D>& state, double h);
   void move_driven(State<D>& state, double t, double h);

@@ -1,0 +1,146 @@
+// Free motion in space. Forces that depend on the motion see that under the forces that contacts had last.
+// These are taken out again, so that the iterations find them anew.
+
+#include <algorithm>
+#include <vector>
+
+#include "sim/math/exponential.h"
+#include "sim/solve/iterate/pieces.h"
+#include "sim/solve/iterate/space.h"
+
+namespace obscura::sim {
+
+// the contacts that bore in the last substep
+void SpaceIterative::find_bearing(const State<D>& state) {
+  begin_bearing(state);
+  const int n = int(model_.bodies.size());
+  auto known = state.contacts.begin();
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    const ContactConstraint& touch = touches_[i];
+    if (!bears(touch.a, touch.b)) continue;
+    while (known != state.contacts.end() && known->key < touch.key) ++known;
+    if (known == state.contacts.end()) break;
+    if (known->key != touch.key || known->force.isZero(0)) continue;
+    bearing_.push_back(
+        {touch.a, touch.b == n ? -1 : touch.b, features_[i], touch.n, touch.point, known->force});
+  }
+  find_borne(state);
+}
+
+void SpaceIterative::gather_bodies(const State<D>& state) {
+  dynamics_.gather(state, true);
+  dynamics_.bear(state, bearing_);
+  stages_.reserve(std::size_t(dynamics_.size()));
+}
+
+// of h^2 times an acceleration, what the scheme moves a body by
+double SpaceIterative::leads() const {
+  if (model_.integrator == Integrator::euler) return 0;
+  return model_.integrator == Integrator::semi_implicit ? 1 : 0.5;
+}
+
+// Of what is on joints they stay in: a joint's forces answer them.
+void SpaceIterative::take_out_contacts(State<D>& state, double h) {
+  const int n = int(model_.bodies.size());
+  for (int i = 0; i < n; ++i) {
+    if (!gives(i) || joints_.has(i)) continue;
+    const Twist<D>& its = borne_[std::size_t(i)];
+    state.v[std::size_t(i)] -= h * its.v, state.x[std::size_t(i)] -= leads() * h * h * its.v;
+    const int number = turning(state, i);
+    if (number < 0) continue;
+    // as place() gives it back: angular momentum stays where a body turns
+    const auto k = std::size_t(number);
+    const AngularVec<D>&inertia = model_.bodies[std::size_t(i)].inertia, change = h * its.w;
+    const Rotation<D> with = rotation<D>(state.turn[k]);
+    state.turn[k] = turned<D>(state.turn[k], AngularVec<D>(-leads() * h * change));
+    const Rotation<D> now = rotation<D>(state.turn[k]);
+    state.spin[k] = carried_spin<D>(inertia, with, now, state.spin[k]) -
+                    carried_spin<D>(inertia, stances_[std::size_t(i)].room_from_body, now, change);
+  }
+}
+
+// By the scene's scheme, which for the whole step is shared out where it is of first order: of Euler's or the
+// semi-implicit one five substeps would be another motion. Bodies on joints go by substeps.
+void SpaceIterative::move_unconstrained(StepPart<D> part) {
+  State<D>& state = part.state;
+  const bool shared =
+      joints_.empty() && substeps_ > 1 &&
+      (model_.integrator == Integrator::euler || model_.integrator == Integrator::semi_implicit);
+  if (varies_ && (part.substep == 0 || !shared)) find_bearing(state);
+  double work = 0;
+  if (shared) {
+    if (part.substep == 0) work = integrate_step(part);
+    share_free_motion(state, part.h);
+  } else if (joints_.empty()) {
+    gather_bodies(state);
+    dynamics_.step(integrate(model_.integrator), state, part.t, part.h, stages_);
+    work = dynamics_.work();
+    take_out_contacts(state, part.h);
+  } else {
+    gather_bodies(state);
+    poses_to_joints();
+    work = joints_.step(dynamics_, integrate(model_.integrator), state, part.t, part.h, stages_);
+    take_out_contacts(state, part.h);
+  }
+  if (!state.work.empty()) state.work[0] += work;
+  move_driven(state, part.t, part.h);
+  v_free_ = state.v, w_free_ = state.spin, x_free_ = state.x, turn_free_ = state.turn;
+  energy_guard_.open(state);
+  for (int i = 0; i < int(model_.bodies.size()); ++i) {
+    if (inactive_[i]) continue;
+    moving_[i].v = state.v[i];
+    if (const int k = turning(state, i); k >= 0) moving_[i].w = state.spin[k];
+  }
+}
+
+// gains_ and bends_: by how much the scheme changes each velocity in the step without contacts, and leads
+// each body aside of the mean velocity's way. The work of forces, J.
+double SpaceIterative::integrate_step(StepPart<D> part) {
+  State<D>& state = part.state;
+  const double h = substeps_ * part.h;
+  gather_bodies(state);
+  const std::vector<Vec<D>> v = state.v, w = state.spin;
+  const std::vector<Orientation<D>> turn = state.turn;
+  const std::vector<BodySpin<D>> own = state.body_spin;
+  dynamics_.step(integrate(model_.integrator), state, part.t, h, stages_);
+  const std::size_t n = v.size(), turning = w.size();
+  gains_.resize(n), bends_.resize(n), spin_gains_.resize(turning), turn_bends_.resize(turning);
+  for (std::size_t i = 0; i < n; ++i) {
+    gains_[i] = state.v[i] - v[i];
+    bends_[i] = state.x[i] - x_[i] - h * (v[i] + 0.5 * gains_[i]);
+    if (gives(int(i))) gains_[i] -= h * borne_[i].v, bends_[i] -= (leads() - 0.5) * h * h * borne_[i].v;
+  }
+  for (std::size_t k = 0; k < turning; ++k) {
+    spin_gains_[k] = state.spin[k] - w[k];
+    const auto mean = turned<D>(turn[k], AngularVec<D>(h * (w[k] + 0.5 * spin_gains_[k])));
+    turn_bends_[k] = logarithm(product(state.turn[k], inverse<D>(mean)));
+    if (!gives(int(n - turning + k))) continue;
+    const AngularVec<D>& its = borne_[n - turning + k].w;
+    spin_gains_[k] -= h * its, turn_bends_[k] -= (leads() - 0.5) * h * h * its;
+  }
+  state.x = x_, state.v = v, state.spin = w, state.turn = turn, state.body_spin = own;
+  return dynamics_.work();
+}
+
+// the part of these that falls to a substep of h s
+void SpaceIterative::share_free_motion(State<D>& state, double h) {
+  const double part = 1 / double(substeps_);
+  const std::size_t still = state.v.size() - state.spin.size();
+  const auto share = [&](std::size_t i) {
+    if (inactive_[i]) return;
+    const Vec<D> gain = part * gains_[i];
+    state.x[i] += h * (state.v[i] + 0.5 * gain) + part * bends_[i];
+    state.v[i] += gain;
+    if (i < still) return;
+    const std::size_t k = i - still;
+    const AngularVec<D> more = part * spin_gains_[k];
+    state.turn[k] =
+        turned<D>(state.turn[k], AngularVec<D>(h * (state.spin[k] + 0.5 * more) + part * turn_bends_[k]));
+    state.spin[k] += more;
+  };
+  each(workers(), int(state.v.size()), kBodyPiece, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) share(std::size_t(i));
+  });
+}
+
+}  // namespace obscura::sim

@@ -1,0 +1,124 @@
+// Contacts that bear, where forces depend on how bodies move: these see what lies there lie, not fall.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "scene/text_run.h"
+
+namespace obscura::scene {
+namespace {
+
+constexpr double kWeightOfAKilogram = 9.81;
+
+std::string at_rate(int rate, const char* more = "") {
+  return fmt::format("[physics]\nsolver = 'iterative'\nrate = {}\n{}\n", rate, more);
+}
+
+std::string box(const char* name, int dimension, double width, double height, double mass, double y,
+                const std::string& more) {
+  const char* depth = dimension == 2 ? "" : ", 0.4";
+  const char* z = dimension == 2 ? "" : ", 0";
+  return fmt::format(
+      "[[box]]\nname = '{}'\nsize = [{}, {}{}]\nmass = {}\nposition = [0, {}{}]\nelasticity = 0\n{}\n", name,
+      width, height, depth, mass, y, z, more);
+}
+
+std::string open_room(int dimension, const char* gravity) {
+  return dimension == 2 ? fmt::format(
+                              "duration = 100\n[room]\nsize = [40, 40]\ncorner = [-20, -20]\nwalls = "
+                              "'none'\ngravity = [0, {}]\n",
+                              gravity)
+                        : fmt::format(
+                              "duration = 100\n[room]\nsize = [40, 40, 40]\ncorner = [-20, -20, "
+                              "-20]\nwalls = 'none'\ngravity = [0, {}, 0]\n",
+                              gravity);
+}
+
+// a plate of 1 kg on the spring of a slider, and 4 kg on it: (1 + 4) g / k lower, however it is damped
+TEST(BearingContacts, WhatLiesOnADampedSpringRestsWhereItsWeightSays) {
+  for (const int dimension : {2, 3}) {
+    for (const int rate : {60, 600}) {
+      const char* axis = dimension == 2 ? "axis = [0, 1]\nat = [0, 3]" : "axis = [0, 1, 0]\nat = [0, 3, 0]";
+      const TextRun scene(open_room(dimension, "-9.81") + at_rate(rate) +
+                          box("p", dimension, 1, 0.1, 1, 3, "") + box("b", dimension, 0.4, 0.4, 4, 3.25, "") +
+                          fmt::format("[[joint]]\ntype = 'slider'\nbetween = ['p', 'room']\n{}\nspring = {{ "
+                                      "stiffness = 100, damping = 20 }}\n",
+                                      axis));
+      const sim::Snapshot now = scene.at(20);
+      const double lower = 5 * kWeightOfAKilogram / 100;
+      EXPECT_NEAR(now.bodies[0].position.y(), 3 - lower, 1e-8) << dimension << " at " << rate;
+      EXPECT_NEAR(now.joints[0].force.y(), 5 * kWeightOfAKilogram, 1e-6) << dimension << " at " << rate;
+    }
+  }
+}
+
+// a heavy box on a light plate that the air brakes: v = (1 - e^(-c t / M)) M g / c, by schemes of every order
+TEST(BearingContacts, DragBrakesWhatLiesOnAPlateToo) {
+  for (const int dimension : {2, 3}) {
+    for (const char* scheme : {"rk4", "midpoint", "semi-implicit", "euler"}) {
+      for (const int rate : {240, 600}) {
+        const TextRun scene(open_room(dimension, "-9.81") +
+                            at_rate(rate, fmt::format("integrator = '{}'", scheme).c_str()) +
+                            box("p", dimension, 1, 0.1, 0.1, 15, "drag = 20\nrotation = false") +
+                            box("b", dimension, 0.4, 0.4, 10, 15.25, "rotation = false"));
+        const double falls = 10.1 * kWeightOfAKilogram / 20;
+        EXPECT_NEAR(scene.at(6).bodies[0].velocity.y(), -falls * (1 - std::exp(-6 * 20 / 10.1)), 5e-6)
+            << dimension << scheme << " at " << rate;
+      }
+    }
+  }
+}
+
+// what lies still on a floor without friction feels no force that is a multiple of its speed along the normal
+TEST(BearingContacts, WhatLiesStillStaysUnderAForceOfItsVelocity) {
+  for (const int rate : {60, 600}) {
+    const TextRun scene("duration = 3\n[room]\nsize = [40, 8]\ncorner = [-20, 0]\n" + at_rate(rate) +
+                        box("b", 2, 0.4, 0.4, 1, 0.2, "friction = 0") +
+                        "[[force]]\nof = 'b'\ncomponents = ['10*vy', 0]\n");
+    EXPECT_NEAR(scene.at(2).bodies[0].velocity.x(), 0, 1e-12) << rate;
+  }
+}
+
+// a charge that glides on such a floor in a magnetic field: its force does no work
+TEST(BearingContacts, AMagneticFieldDoesNoWorkOnWhatGlides) {
+  const TextRun scene("duration = 3\n[room]\nsize = [40, 8]\nmagnetic = 5\n" + at_rate(600) +
+                      "[[ball]]\nname = 'b'\nradius = 0.1\nmass = 1\ncharge = -1\nfriction = 0\nelasticity = "
+                      "0\nposition = [3, 0.1]\nvelocity = [0.5, 0]\n");
+  EXPECT_NEAR(scene.at(2).bodies[0].velocity.x(), 0.5, 2e-5);
+}
+
+// Two that attract each other, touch and turn: their angular momentum stays, to the second order of the step.
+TEST(BearingContacts, APairThatTurnsKeepsItsAngularMomentum) {
+  const auto lost = [](const std::string& scene) {
+    const TextRun run(scene);
+    const sim::Snapshot begun = run.at(0), now = run.at(4);
+    EXPECT_NEAR(now.energies.total(), begun.energies.total(), 2e-3 * std::fabs(begun.energies.total()));
+    return std::fabs(now.angular_momentum.z() / begun.angular_momentum.z() - 1);
+  };
+  for (const int rate : {240, 600}) {
+    const double h = 1.0 / rate;
+    EXPECT_LT(
+        lost(open_room(2, "0") + at_rate(rate) +
+             "[[ball]]\nname = 'a'\nradius = 0.3\nmass = 1\nelasticity = 0\nfriction = 0\nposition = [0, "
+             "0]\nvelocity = [0, 0.75]\n[[ball]]\nname = 'b'\nradius = 0.2\nmass = 3\nelasticity = "
+             "0\nfriction = 0\nposition = [0.5, 0]\nvelocity = [0, -0.25]\n[[spring]]\nbetween = ['a', "
+             "'b']\nstiffness = 20\nrest_length = 0.1\n"),
+        15 * h * h)
+        << rate;
+    const auto cube = [](const char* name, double side) {
+      return fmt::format(
+          "[[box]]\nname = '{}'\nsize = [0.4, 0.4, 0.4]\nmass = 1\nelasticity = 0\nposition = [{}, 0, "
+          "0]\nvelocity = [0, {}, 0]\nspin = [0, 0, 57.29577951308232]\n",
+          name, 0.2 * side, 0.2 * side);
+    };
+    EXPECT_LT(lost(open_room(3, "0") + "gravitation = 5\n" + at_rate(rate) + cube("a", -1) + cube("b", 1)),
+              110 * h * h)
+        << rate;
+  }
+}
+
+}  // namespace
+}  // namespace obscura::scene
