@@ -24,6 +24,7 @@ struct ContactConstraint {
   bool passes = false;            // however it looks, it does not close with an impact
   bool bounces = false;           // an impact that is left to the iterations
   bool closing = false;           // slowly
+  bool blow = false;              // it closes fast
   double closes = 0;              // when it bounces, s from the start of the substep
 
   /// m/s: what is to be added to the slip at the end of the substep.

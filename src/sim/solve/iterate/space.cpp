@@ -26,6 +26,7 @@ constexpr int kMostIterations = 40;      // of few touches
 constexpr int kFewestIterations = 4;     // of many
 constexpr int kTouchIterations = 20000;  // touches times iterations between
 constexpr int kTempering = 5;            // rounds
+constexpr double kAtOnce = 1e-3;         // of a step: what meets so soon after another meets with it
 constexpr double kRoundingGain = 1e-9;   // of its kinetic energy: what an island may win by rounding
 constexpr double kNotNear = -1e300;      // 1/s: among closing rates, a touch that is not near
 
@@ -256,6 +257,7 @@ void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
   const int count = int(touches_.size());
   known_force_.resize(touches_.size());
   each(workers(), count, kTouchPiece, [&](int begin, int end) { set_aims(begin, end, state, h); });
+  order_blows(h);
   closing_.assign(model_.bodies.size() + 1, 0), all_.resize(touches_.size());
   std::iota(all_.begin(), all_.end(), 0);
   for (const ContactConstraint& touch : touches_)
@@ -288,6 +290,7 @@ void SpaceIterative::set_aims(int begin, int end, const State<D>& state, double 
       // what is left of the step
     } else if (before < -restitution_threshold_ && touch.gap + h * (before - g_ * h) < 0) {
       touch.least = touch.passes ? -1e9 : -touch.bounce * before;
+      touch.blow = !touch.passes;
       touch.bounces = !touch.passes && touch.bounce > 0;
       touch.closes = std::clamp(-touch.gap / before, 0.0, h);
       touch.closing = !touch.passes && touch.bounce == 0;
@@ -304,6 +307,73 @@ void SpaceIterative::set_aims(int begin, int end, const State<D>& state, double 
     if (size > most) touch.tangent_impulse *= most / size;
     known_force_[i] = 1;
   }
+}
+
+// Of the blows of a step that are left to the iterations, a body meets the first; what it met after that it
+// may miss, or meet with another speed.
+void SpaceIterative::order_blows(double h) {
+  later_blows_.clear();
+  const int count = int(touches_.size()), none = int(model_.bodies.size());
+  if (std::none_of(touches_.begin(), touches_.end(), [](const auto& touch) { return touch.blow; })) return;
+  first_blows_.assign(std::size_t(none) + 1, {});
+  const auto each_pair = [&](auto&& act) {
+    for (int first = 0, end = 0; first < count; first = end) {
+      double when = 1e300;
+      for (; end < count && touches_[end].a == touches_[first].a && touches_[end].b == touches_[first].b;
+           ++end)
+        if (touches_[end].blow) when = std::min(when, touches_[end].closes);
+      if (when < 1e300) act(first, end, when);
+    }
+  };
+  each_pair([&](int first, int, double when) {
+    for (const int body : {touches_[first].a, touches_[first].b}) {
+      FirstBlow& its = first_blows_[body];
+      if (moving_[body].inverse_mass == 0) continue;
+      if (when < its.when)
+        its.other = its.when, its.when = when, its.pair = first;
+      else
+        its.other = std::min(its.other, when);
+    }
+  });
+  each_pair([&](int first, int end, double when) {
+    const double after = std::min(first_blows_[touches_[first].a].of_others(first),
+                                  first_blows_[touches_[first].b].of_others(first));
+    if (!(after + kAtOnce * h < when)) return;
+    for (int i = first; i < end; ++i) {
+      ContactConstraint& touch = touches_[i];
+      if (!touch.blow) continue;
+      later_blows_.push_back({i, after});
+      touch.least = -1e9, touch.bounces = touch.closing = false;
+    }
+  });
+}
+
+// those of the later blows that are met all the same: true if there are any
+bool SpaceIterative::strike_later(double h) {
+  const std::size_t waited = later_blows_.size();
+  std::erase_if(later_blows_, [&](const LaterBlow& later) {
+    ContactConstraint& touch = touches_[later.touch];
+    const double speed = touch.n.dot(slip(touch));
+    const double gap = touch.closes > 0 ? touch.gap * (1 - later.after / touch.closes) : touch.gap;
+    if (gap + (h - later.after) * speed >= 0) return false;
+    if (speed < -restitution_threshold_) {
+      touch.least = -touch.bounce * speed;
+      touch.bounces = touch.bounce > 0, touch.closing = touch.bounce == 0;
+    } else {
+      touch.least = std::min(-touch.gap / h, 0.0);
+    }
+    if (touch.closing) closing_[touch.a] = closing_[touch.b] = 1;
+    return true;
+  });
+  if (later_blows_.size() == waited) return false;
+  // what has been given before stays given
+  for (ContactConstraint& touch : touches_) {
+    if (!touch.blow || !touch.bounces || !(touch.normal_impulse > 0)) continue;
+    touch.impact_impulse += touch.normal_impulse * touch.n + touch.tangent_impulse;
+    touch.normal_impulse = 0, touch.tangent_impulse.setZero();
+    touch.least = std::min(-touch.gap / h, 0.0), touch.bounces = false;
+  }
+  return true;
 }
 
 void SpaceIterative::moderate_warm_start() {
@@ -383,7 +453,7 @@ bool SpaceIterative::gains(const State<D>& state) {
 }
 
 bool SpaceIterative::temper(StepPart<D> part, int round) {
-  if (!gains(part.state) || round + 1 == kTempering) return false;
+  if (round + 1 == kTempering || !(gains(part.state) || strike_later(part.h))) return false;
   batches_.load(touches_);
   return true;
 }
@@ -394,7 +464,8 @@ void SpaceIterative::find_strikes(double h) {
   const int n = int(model_.bodies.size());
   strikes_.assign(n + 1, h);
   for (const ContactConstraint& touch : touches_) {
-    if (!touch.bounces || touch.normal_impulse <= 0) continue;
+    const bool struck = touch.bounces && touch.normal_impulse > 0;
+    if (!struck && !(touch.blow && !touch.impact_impulse.isZero(0))) continue;
     for (const int side : {touch.a, touch.b})
       each_tied(side, [&](int body) { strikes_[body] = std::min(strikes_[body], touch.closes); });
   }

@@ -130,6 +130,18 @@ class SpaceIterative final : public Iterative<3> {
     int island = -1;     // whose budget is spent; -1: it does not count
     bool opens = false;  // its bodies part there, and have not bounced
   };
+  // of a body, s: when the first blow meets it, of which pair, and when the first of another
+  struct FirstBlow {
+    double when = 1e300, other = 1e300;
+    int pair = -1;
+
+    double of_others(int which) const { return which == pair ? other : when; }
+  };
+  // a touch that closes fast, and when its bodies meet something else before
+  struct LaterBlow {
+    int touch;
+    double after;  // s
+  };
   // those of a pair, and the most that a round has changed, m
   struct OverlapPair {
     int level, first, end;
@@ -200,6 +212,8 @@ class SpaceIterative final : public Iterative<3> {
   void place(State<D>& state, double h);
   void warm_start_contacts(const State<D>& state, double h);
   void set_aims(int begin, int end, const State<D>& state, double h);
+  void order_blows(double h);
+  bool strike_later(double h);
   void moderate_warm_start();
   void solve_together();
   void shed_gains();
@@ -288,13 +302,15 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<OverlapPair> overlap_pairs_, sorted_overlaps_;
   PairLevels overlap_levels_;
   std::vector<int> overlap_begins_, overlap_places_;  // of each level
-  std::vector<char> known_force_;                     // of each touch: whether the state has a force for it
-  std::vector<double> before_, gained_, returned_;    // of each island's impacts, J
-  std::vector<ContactWork> works_;                    // of each touch
-  std::vector<double> given_;                         // by the contacts of each island, J
-  bool struck_ = false;                               // whether any body had an impact in this step
-  std::vector<double> when_;                          // bodies: s, their last impact in it; or -1
-  std::vector<Flown> flown_;                          // after it, or as the step began
+  std::vector<FirstBlow> first_blows_;
+  std::vector<LaterBlow> later_blows_;
+  std::vector<char> known_force_;                   // of each touch: whether the state has a force for it
+  std::vector<double> before_, gained_, returned_;  // of each island's impacts, J
+  std::vector<ContactWork> works_;                  // of each touch
+  std::vector<double> given_;                       // by the contacts of each island, J
+  bool struck_ = false;                             // whether any body had an impact in this step
+  std::vector<double> when_;                        // bodies: s, their last impact in it; or -1
+  std::vector<Flown> flown_;                        // after it, or as the step began
   mutable std::vector<Course> courses_;
   std::vector<Fastest> fastest_;
   std::vector<AngularVec<D>> twist_;  // bodies: what the step adds to angular momentum without contacts
