@@ -90,6 +90,34 @@ TEST(BearingContacts, AMagneticFieldDoesNoWorkOnWhatGlides) {
   EXPECT_NEAR(scene.at(2).bodies[0].velocity.x(), 0.5, 2e-5);
 }
 
+// what slides there is braked by mu g and turns as if it were not, whatever way friction takes
+TEST(BearingContacts, FrictionInAMagneticFieldTurnsWithWhatItBrakes) {
+  const double mu = 0.2, v = 1.2, turns = 4, t = 0.4;
+  for (const int rate : {60, 600}) {
+    const TextRun scene("duration = 1\n[room]\nsize = [20, 8, 20]\nmagnetic = [0, 4, 0]\n" + at_rate(rate) +
+                        box("b", 3, 0.4, 0.4, 1, 0.2,
+                            "friction = 0.2\ncharge = 1\nrotation = false\nvelocity = [1.2, 0, 0]"));
+    const sim::Vec3 now = scene.at(t).bodies[0].velocity;
+    const double speed = v - mu * kWeightOfAKilogram * t;
+    EXPECT_NEAR(now.x(), speed * std::cos(turns * t), 2e-5) << rate;
+    EXPECT_NEAR(now.z(), speed * std::sin(turns * t), 2e-5) << rate;
+  }
+}
+
+// A force that jumps cuts steps into pieces as short as rounding, whose impulses are of no force that lasts.
+TEST(BearingContacts, ForcesThatJumpLeaveWhatLiesOnASpringThere) {
+  for (const int rate : {60, 240}) {
+    const TextRun scene(
+        "duration = 2\n[room]\nsize = [8, 6]\ncorner = [-4, 0]\ndrag = 0.5\n" + at_rate(rate) +
+        box("p", 2, 3, 0.2, 1, 2, "friction = 0.5") + box("b", 2, 0.5, 0.5, 5, 2.35, "friction = 0.5") +
+        "[[joint]]\ntype = 'slider'\nbetween = ['p', 'room']\naxis = [0, 1]\nspring = { stiffness = 2000, "
+        "damping = 40 }\n[[force]]\nof = 'b'\ncomponents = ['8*sign(sin(37*t))', 0]\n");
+    const double begun = scene.at(0).energies.total();
+    for (const double t : {0.1, 0.3, 0.7, 1.5})
+      EXPECT_LT(scene.at(t).energies.total(), begun) << rate << " " << t;
+  }
+}
+
 // Two that attract each other, touch and turn: their angular momentum stays, to the second order of the step.
 TEST(BearingContacts, APairThatTurnsKeepsItsAngularMomentum) {
   const auto lost = [](const std::string& scene) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "sim/collide/narrow_phase.h"
 
 namespace obscura::sim {
@@ -14,10 +16,13 @@ struct PersistentContact {
   Vec<D> normal = Vec<D>::Zero(), point = Vec<D>::Zero();  // where the step begins, in the room
   Vec<D> force = Vec<D>::Zero();                           // N, on a there
 
+  bool slides = false;           // its friction is against the slip, and turns with that
+  Vec<D> belt = Vec<D>::Zero();  // m/s: what belts add to the slip of a
+
   struct Push {
     Vec<D> force, point;  // on a, N; where, in the room
   };
-  /// As the bodies stand within the step.
+  /// As the bodies stand and move within the step.
   Push at(const BodyMotion<D>& a_at, const BodyMotion<D>& b_at) const {
     const EvaluatedContact<D> now = evaluate(gap, a_at, b_at);
     // by the least turn from the one normal to the other: f + u x f + u x (u x f) / (1 + n . n')
@@ -25,7 +30,23 @@ struct PersistentContact {
     if (!(cos > 0)) return {force, now.point};
     const AngularVec<D> u = moment<D>(normal, now.normal);
     const Vec<D> across = cross_velocity<D>(u, force);
-    return {force + across + cross_velocity<D>(u, across) / (1 + cos), now.point};
+    const Vec<D> turned = force + across + cross_velocity<D>(u, across) / (1 + cos);
+    return {against_slip(turned, now.normal, now.point, a_at, b_at), now.point};
+  }
+  /// The force where the step begins, as the bodies move where it ends.
+  Vec<D> ended(const BodyMotion<D>& a_at, const BodyMotion<D>& b_at) const {
+    return against_slip(force, normal, evaluate(gap, a_at, b_at).point, a_at, b_at);
+  }
+
+ private:
+  Vec<D> against_slip(const Vec<D>& f, const Vec<D>& n, const Vec<D>& p, const BodyMotion<D>& a_at,
+                      const BodyMotion<D>& b_at) const {
+    if (!slides) return f;
+    const Vec<D> passes = a_at.velocity(Vec<D>(p - a_at.x)) - b_at.velocity(Vec<D>(p - b_at.x)) + belt;
+    const Vec<D> slip = passes - n * n.dot(passes), pushes = n * n.dot(f), rubs = f - pushes;
+    const double speed = std::sqrt(slip.squaredNorm());
+    if (!(rubs.dot(slip) < 0)) return f;
+    return pushes - slip * (std::sqrt(rubs.squaredNorm()) / speed);
   }
 };
 

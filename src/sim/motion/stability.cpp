@@ -134,6 +134,14 @@ bool grows(Integrator integrator, const Tightness& oscillator, double h) {
   return grows(integrator, oscillator.stiffness, oscillator.damping, h);
 }
 
+// by Runge-Kutta  v = h a (1 - z/2 + z^2/6 - z^3/24 - (h w)^2/6 + ...),  z = h g, by midpoint h a (1 - z/2)
+double share_answered(Integrator integrator, const Tightness& oscillator, double h) {
+  const double z = h * oscillator.damping;
+  if (integrator == Integrator::midpoint) return z / 2;
+  if (integrator != Integrator::rk4) return 0;
+  return z / 2 * (1 - z / 3 * (1 - z / 4)) + h * h * oscillator.stiffness / 6;
+}
+
 double longest_step(Integrator integrator, const Tightness& oscillator, double h) {
   if (!grows(integrator, oscillator, h)) return h;
   double stands = 0, falls = h;

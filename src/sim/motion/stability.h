@@ -29,6 +29,10 @@ bool grows(Integrator integrator, const Tightness& oscillator, double h);
 /// The longest step at which it does not, no longer than h (s).
 double longest_step(Integrator integrator, const Tightness& oscillator, double h);
 
+/// How much of a constant force on such an oscillator at rest its springs and dampers answer within a step of
+/// h (s), in the mean of it: what is missing of v = h f / m after it.
+double share_answered(Integrator integrator, const Tightness& oscillator, double h);
+
 /// A hint for the user: the step, the limit, the spring, and a rate that is high enough. Empty if the step is
 /// short enough for every spring on every body.
 template <int D>

@@ -21,6 +21,12 @@
 
 namespace obscura::sim {
 
+namespace {
+
+constexpr double kMostAnswered = 0.7;  // of an error of a contact's force, from step to step
+
+}  // namespace
+
 template <int D>
 Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths, double deepest)
     : model_(model),
@@ -39,6 +45,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
       std::any_of(model.bodies.begin(), model.bodies.end(), [](const auto& body) { return body.drag != 0; });
   const double h = 1 / value(model.rate);
   substeps_ = substeps_for(0, h);
+  if (varies_) tightness_ = tightness(model, std::vector<Grip<D>>(model.mice.size()));
   restitution_threshold_ = 2 * h / substeps_ * g_ + 1e-9 * model.scale;
   if (std::none_of(model.bodies.begin(), model.bodies.end(), [](const auto& body) { return body.carries(); }))
     return;
@@ -105,20 +112,33 @@ void Iterative<D>::begin_bearing(const State<D>& state) {
 }
 
 template <int D>
-void Iterative<D>::find_borne(const State<D>& state) {
+void Iterative<D>::find_borne(const State<D>& state, double h) {
   borne_.clear();
   if (bearing_.empty()) return;
   borne_.resize(model_.bodies.size());
-  for (const PersistentContact<D>& contact : bearing_) {
-    for (const auto& [body, sign] : {std::pair{contact.a, 1.0}, std::pair{contact.b, -1.0}}) {
-      if (body < 0 || !moves(body)) continue;
-      const BodyMotion<D> at = body_motion(state, body);
-      const Vec<D> force = sign * contact.force;
-      Twist<D>& its = borne_[std::size_t(body)];
-      its.v += force / model_.bodies[std::size_t(body)].mass;
-      its.w += angular_response<D>(model_.bodies[std::size_t(body)], at.room_from_body,
-                                   moment<D>(contact.point - at.x, force));
-    }
+  const bool held =
+      std::any_of(state.grips.begin(), state.grips.end(), [](const auto& grip) { return grip.body >= 0; });
+  const std::vector<Tightness> with_hands = held ? tightness(model_, state.grips) : std::vector<Tightness>();
+  const std::vector<Tightness>& tight = held ? with_hands : tightness_;
+  for (PersistentContact<D>& contact : bearing_) {
+    double answered = 0;
+    for (const int body : {contact.a, contact.b})
+      if (body >= 0 && moves(body))
+        answered = std::max(answered, share_answered(model_.integrator, tight[std::size_t(body)], h));
+    if (answered > kMostAnswered) contact.force *= kMostAnswered / answered;
+  }
+  for (const PersistentContact<D>& contact : bearing_) add_borne(contact, contact.force);
+}
+
+template <int D>
+void Iterative<D>::add_borne(const PersistentContact<D>& contact, const Vec<D>& force) {
+  for (const auto& [body, sign] : {std::pair{contact.a, 1.0}, std::pair{contact.b, -1.0}}) {
+    if (body < 0 || !moves(body)) continue;
+    const BodyMotion<D> at = begun(body);
+    Twist<D>& its = borne_[std::size_t(body)];
+    its.v += sign * force / model_.bodies[std::size_t(body)].mass;
+    its.w += angular_response<D>(model_.bodies[std::size_t(body)], at.room_from_body,
+                                 moment<D>(contact.point - at.x, Vec<D>(sign * force)));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "sim/model/drives.h"
 #include "sim/model/script.h"
 #include "sim/motion/forward_dynamics.h"
+#include "sim/motion/stability.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/solve/iterate/joint_solver.h"
 #include "sim/solve/iterate/moving_body.h"
@@ -141,13 +142,18 @@ class Iterative : public ContactSolver<D> {
   bool bears(int a, int b) const {
     return forced_[std::size_t(a)] || (b >= 0 && b < int(forced_.size()) && forced_[std::size_t(b)]);
   }
-  /// What the forces of bearing_ give to each body, into borne_.
-  void find_borne(const State<D>& state);
+  /// What the forces of bearing_ give to each body, into borne_, for a motion of h s. They are less where the
+  /// body is held so stiffly that a wrong force would be answered by one that is as wrong.
+  void find_borne(const State<D>& state, double h);
+  void add_borne(const PersistentContact<D>& contact, const Vec<D>& force);
   bool wake_near_driven(StepPart<D> step, double span);
   /// How far the i-th kinematic body may be, within h s from t, from where its velocity at t takes it, m.
   double farther(int i, double t, double h);
   void foresee_speeds(StepPart<D> step);
   void begin_corrections();
+  /// How much of a contact's force is what this step finds, the rest what it was: over a piece of a step,
+  /// which may be a millionth of it, an impulse over its time is no force that lasts.
+  double newness() const { return std::min(1.0, 2 * part_of_step_); }
   /// Whether contacts of a body may give energy, or give it not to that body alone.
   bool shares_forces(int body) const {
     return body < int(model_.bodies.size()) &&
@@ -172,6 +178,7 @@ class Iterative : public ContactSolver<D> {
   bool varies_ = false;                        // what moves bodies depends on how they move
   std::vector<PersistentContact<D>> bearing_;  // of the last substep, if it does
   std::vector<char> forced_;                   // one a body: see begin_bearing()
+  std::vector<Tightness> tightness_;           // of bodies, but for hands
   std::vector<Twist<D>> borne_;                // one a body, m/s^2 and rad/s^2; empty: there are none
   std::vector<char> carries_;                  // one a body: kinematic or with a belt; empty: there are none
   std::vector<double> quicker_;  // one a body, m/s: how much faster the step moves it; empty: none are moved

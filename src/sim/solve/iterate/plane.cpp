@@ -214,6 +214,13 @@ void PlaneIterative::warm_start(StepPart<D> part) {
   constants_ = {part.h, 0.05 * restitution_threshold_,
                 part.h * std::sqrt(model_.gravity.squaredNorm()) + driven_gain_, allowed_overlap(part.state)};
   if (part.substep == 0) warm_start_.begin(moving_);
+  if (newness() < 1) {
+    forces_before_.resize(batches_.size());
+    for (std::size_t i = 0; i < batches_.size(); ++i) {
+      std::copy_n(&batches_[i].p[0][0], 2 * kLanes, &forces_before_[i].p[0][0]);
+      std::copy_n(&batches_[i].q[0][0], 2 * kLanes, &forces_before_[i].q[0][0]);
+    }
+  }
   apply_warm_start();
   if (part.substep == 0) moderate_warm_start();
 }
@@ -271,7 +278,26 @@ void PlaneIterative::finish_iterations(StepPart<D> part) {
   const bool last = part.substep + 1 == substeps_;
   solve_joint_velocities();
   iterate_last(last ? part.state.contacts.data() : nullptr);
+  if (newness() < 1) keep_forces(part.state, last);
   impacts_.record(pairs_.all(), part.state.contacts, batches_);
+}
+
+// of a piece of a step
+void PlaneIterative::keep_forces(State<D>& state, bool last) {
+  const double share = newness();
+  for (std::size_t i = 0; i < batches_.size(); ++i) {
+    ContactBatch& g = batches_[i];
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (g.pair[lane] < 0) continue;
+      for (int k = 0; k < g.touches[lane]; ++k) {
+        const plane::LaneImpulses& before = forces_before_[i];
+        double &p = g.p[k][lane], &q = g.q[k][lane];
+        p = before.p[k][lane] + share * (p - before.p[k][lane]);
+        q = before.q[k][lane] + share * (q - before.q[k][lane]);
+        if (last) state.contacts[std::size_t(g.first[lane] + k)].force = {p, q};
+      }
+    }
+  }
 }
 
 void PlaneIterative::list_touching(StepPart<D>, std::vector<std::pair<int, int>>& pairs) const {

@@ -80,6 +80,7 @@ class PlaneIterative final : public Iterative<2> {
   void report_pair(const plane::Pair& pair, State<D>& state) const;
   void build_batches(const State<D>& state, bool known);
   void moderate_warm_start();
+  void keep_forces(State<D>& state, bool last);
   void place_contacts(State<D>& state, bool all) const;
   bool update_batches(const State<D>& state);
   int colour(const plane::Pair& pair);
@@ -104,7 +105,7 @@ class PlaneIterative final : public Iterative<2> {
   void find_few();
   double squared_change() const;
   void solve_together(std::span<const std::pair<int, int>> lanes);
-  void find_bearing(const State<D>& state);
+  void find_bearing(const State<D>& state, double h);
   void integrate_unconstrained(State<D>& state, double t, double h);
   void share_free_motion(StepPart<D> part);
   void integrate_jointed(StepPart<D> part);
@@ -164,7 +165,8 @@ class PlaneIterative final : public Iterative<2> {
     plane::LaneList slow, fast;
   };
   std::vector<Seen> seen_;
-  std::vector<int> iterated_;  // pieces of an iteration: how many pairs
+  std::vector<plane::LaneImpulses> forces_before_;  // by group, N: before a piece of a step
+  std::vector<int> iterated_;                       // pieces of an iteration: how many pairs
   // of an island at rest: its pairs, by lane, and batches of its own
   std::vector<int> rest_;
   std::vector<plane::ContactBatch> rest_batches_;

@@ -44,9 +44,11 @@ ContactCandidate<2> candidate(const ContactBatch& g, int lane, int k) {
 }  // namespace
 
 void PlaneIterative::move_unconstrained(StepPart<D> part) {
-  if (varies_ && (part.substep == 0 || apart_ || !joints_.empty())) find_bearing(part.state);
-  // as contacts that bear turn from substep to substep
-  if (part.substep == 0) apart_ = smooth() && dynamics_.ever() && joints_.empty() && !bearing_.empty();
+  // contacts that bear turn from substep to substep
+  const bool turns = !joints_.empty() || (smooth() && dynamics_.ever());
+  if (varies_ && (part.substep == 0 || apart_ || !joints_.empty()))
+    find_bearing(part.state, turns ? part.h : substeps_ * part.h);
+  if (part.substep == 0) apart_ = turns && joints_.empty() && !bearing_.empty();
   if (apart_)
     integrate_unconstrained(part.state, part.t, part.h);
   else if (part.substep == 0)
@@ -58,7 +60,7 @@ void PlaneIterative::move_unconstrained(StepPart<D> part) {
 }
 
 // the contacts that bore in the last substep
-void PlaneIterative::find_bearing(const State<D>& state) {
+void PlaneIterative::find_bearing(const State<D>& state, double h) {
   begin_bearing(state);
   const int none = int(turns_.size());
   for (const Pair& pair : pairs_.all()) {
@@ -75,7 +77,7 @@ void PlaneIterative::find_bearing(const State<D>& state) {
       contact.normal = {at.nx, at.ny}, contact.point = {at.x, at.y}, contact.force = force;
     }
   }
-  find_borne(state);
+  find_borne(state, h);
 }
 
 // gain_ and bend_: how each body would move in the step without contacts and joints, by the scene's

@@ -519,7 +519,21 @@ void SpaceIterative::place_bodies(StepPart<D> part) {
 }
 
 // the forces of this substep; what sleeps keeps its own
-void SpaceIterative::report_contacts(State<D>& state, double h) const {
+void SpaceIterative::report_contacts(State<D>& state, double h) {
+  if (newness() < 1) before_piece_ = state.contacts;
+  write_contacts(state, h);
+  if (newness() == 1) return;
+  auto known = before_piece_.begin();
+  for (Contact<D>& contact : state.contacts) {
+    while (known != before_piece_.end() && known->key < contact.key) ++known;
+    const Vec<D> before =
+        known != before_piece_.end() && known->key == contact.key ? known->force : Vec<D>(Vec<D>::Zero());
+    if (moves(contact.key.a) || (contact.key.b >= 0 && moves(contact.key.b)))
+      contact.force = before + newness() * (contact.force - before);
+  }
+}
+
+void SpaceIterative::write_contacts(State<D>& state, double h) const {
   if (std::find(state.frozen.begin(), state.frozen.end(), 1) == state.frozen.end()) {
     state.contacts.resize(touches_.size());
     each(workers(), int(touches_.size()), kTouchPiece, [&](int begin, int end) {

@@ -236,10 +236,11 @@ class SpaceIterative final : public Iterative<3> {
   }
   Vec<D> belt(const ContactConstraint& touch) const;
   Vec<D> drift(int touch, const State<D>& state, double h) const;
-  void find_bearing(const State<D>& state);
+  void find_bearing(const State<D>& state, double h);
   bool gives(int body) const {
     return !borne_.empty() && !inactive_[std::size_t(body)] && dynamics_.has(body);
   }
+  void turn_friction(const State<D>& state);
   double leads() const;
   void gather_bodies(const State<D>& state);
   void take_out_contacts(State<D>& state, double h);
@@ -253,13 +254,14 @@ class SpaceIterative final : public Iterative<3> {
   double find_overlaps(const State<D>& state, double h);
   void sort_overlaps();
   void push_apart(OverlapPair& pair);
-  void report_contacts(State<D>& state, double h) const;
+  void report_contacts(State<D>& state, double h);
+  void write_contacts(State<D>& state, double h) const;
   Contact<D> contact(const ContactConstraint& touch, double h) const;
 
   MayTouch<D> may_touch_;
   BroadPhase<D> broad_;
   Response<D> response_;
-  std::vector<Contact<D>> near_;
+  std::vector<Contact<D>> near_, before_piece_;
   StruckSpeeds struck_speeds_;                // in the step
   std::vector<int> struck_bodies_, reached_;  // of these which are struck, and which of those sleep
   EnergyGuard<D> energy_guard_;

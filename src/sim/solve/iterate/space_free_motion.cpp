@@ -10,8 +10,14 @@
 
 namespace obscura::sim {
 
+namespace {
+
+constexpr double kSliding = 0.999;  // of the square of what friction can: more slides
+
+}  // namespace
+
 // the contacts that bore in the last substep
-void SpaceIterative::find_bearing(const State<D>& state) {
+void SpaceIterative::find_bearing(const State<D>& state, double h) {
   begin_bearing(state);
   const int n = int(model_.bodies.size());
   auto known = state.contacts.begin();
@@ -21,16 +27,38 @@ void SpaceIterative::find_bearing(const State<D>& state) {
     while (known != state.contacts.end() && known->key < touch.key) ++known;
     if (known == state.contacts.end()) break;
     if (known->key != touch.key || known->force.isZero(0)) continue;
-    bearing_.push_back(
-        {touch.a, touch.b == n ? -1 : touch.b, features_[i], touch.n, touch.point, known->force});
+    PersistentContact<D>& contact = bearing_.emplace_back();
+    contact.a = touch.a, contact.b = touch.b == n ? -1 : touch.b;
+    contact.gap = features_[i], contact.belt = touch.belt;
+    contact.normal = touch.n, contact.point = touch.point, contact.force = known->force;
+    // as long as friction does not bring it to rest
+    const Vec<D> slips = slip(touch);
+    const double pressed = touch.n.dot(known->force);
+    const Vec<D> rubs = known->force - pressed * touch.n;
+    const double stops = h * (moving_[touch.a].inverse_mass + moving_[touch.b].inverse_mass);
+    contact.slides =
+        rubs.squaredNorm() > kSliding * touch.mu * touch.mu * pressed * pressed &&
+        (slips - touch.n * touch.n.dot(slips)).squaredNorm() > stops * stops * rubs.squaredNorm();
   }
-  find_borne(state);
+  find_borne(state, h);
 }
 
 void SpaceIterative::gather_bodies(const State<D>& state) {
   dynamics_.gather(state, true);
   dynamics_.bear(state, bearing_);
   stages_.reserve(std::size_t(dynamics_.size()));
+}
+
+// friction of what slides, into borne_, as it is at the end of the free motion
+void SpaceIterative::turn_friction(const State<D>& state) {
+  const auto slides = [](const PersistentContact<D>& contact) { return contact.slides; };
+  if (std::none_of(bearing_.begin(), bearing_.end(), slides)) return;
+  for (PersistentContact<D>& contact : bearing_) {
+    if (!contact.slides) continue;
+    const Vec<D> force = contact.ended(body_motion(state, contact.a),
+                                       contact.b < 0 ? BodyMotion<D>() : body_motion(state, contact.b));
+    add_borne(contact, force - contact.force);
+  }
 }
 
 // of h^2 times an acceleration, what the scheme moves a body by
@@ -41,6 +69,7 @@ double SpaceIterative::leads() const {
 
 // Of what is on joints they stay in: a joint's forces answer them.
 void SpaceIterative::take_out_contacts(State<D>& state, double h) {
+  turn_friction(state);
   const int n = int(model_.bodies.size());
   for (int i = 0; i < n; ++i) {
     if (!gives(i) || joints_.has(i)) continue;
@@ -66,7 +95,7 @@ void SpaceIterative::move_unconstrained(StepPart<D> part) {
   const bool shared =
       joints_.empty() && substeps_ > 1 &&
       (model_.integrator == Integrator::euler || model_.integrator == Integrator::semi_implicit);
-  if (varies_ && (part.substep == 0 || !shared)) find_bearing(state);
+  if (varies_ && (part.substep == 0 || !shared)) find_bearing(state, shared ? substeps_ * part.h : part.h);
   double work = 0;
   if (shared) {
     if (part.substep == 0) work = integrate_step(part);
@@ -103,6 +132,7 @@ double SpaceIterative::integrate_step(StepPart<D> part) {
   const std::vector<Orientation<D>> turn = state.turn;
   const std::vector<BodySpin<D>> own = state.body_spin;
   dynamics_.step(integrate(model_.integrator), state, part.t, h, stages_);
+  turn_friction(state);
   const std::size_t n = v.size(), turning = w.size();
   gains_.resize(n), bends_.resize(n), spin_gains_.resize(turning), turn_bends_.resize(turning);
   for (std::size_t i = 0; i < n; ++i) {
