@@ -23,6 +23,7 @@ namespace {
 
 constexpr double kFlight = 1e-9;           // of its motion: more no body gains alone
 constexpr double kJointed = 1e-3;          // the same on joints, by the error of a step
+constexpr double kShared = 1e-2;           // the same of what forces between bodies hold together
 constexpr double kMostOfChange = 0.1;      // of what a step changes, at most so much is taken back or added
 constexpr double kEnergyRounding = 1e-13;  // of all that is in motion or may fall
 
@@ -31,9 +32,17 @@ Rotation<D> axes(const State<D>& state, int k) {
   return D == 2 ? Rotation<D>(Rotation<D>::Identity()) : rotation<D>(state.turn[k]);
 }
 
+// whether it acts between bodies and has an energy that they share
+template <int D>
+bool shared(const Force<D>& force) {
+  return force.on != Force<D>::On::each && !force.center && force.has_potential() &&
+         !(force.formula && force.formula->timed);
+}
+
 // whether a force may give energy that no potential of its subjects tells
 template <int D>
 bool works(const Force<D>& force) {
+  if (shared(force)) return false;
   if (force.on != Force<D>::On::each || (force.center && force.center->body >= 0)) return true;
   if (!force.formula) return false;
   return force.formula->potential ? force.formula->timed : force.formula->works && force.formula->feeds;
@@ -147,7 +156,7 @@ template <int D>
 void EnergyGuard<D>::gather(const State<D>& state) {
   const int n = int(weights_.size());
   const auto counts = [&](int body) { return body >= 0 && weights_[body].mass > 0; };
-  tied_.assign(n, 0), jointed_.assign(n, 0), held_.assign(n, 0);
+  tied_.assign(n, 0), jointed_.assign(n, 0), held_.assign(n, 0), shares_.assign(n, 0);
   const bool exact = model_.integrator == Integrator::rk4;  // others may win by their law
   groups_.reset(n), bound_.assign(n, {}), sums_.assign(n, {});
   const auto link = [&](int a, int b, bool fast) {
@@ -183,6 +192,20 @@ void EnergyGuard<D>::gather(const State<D>& state) {
     for (const int body : chain.bodies) link(body, chain.bodies[0], true), bound_[body].held = true;
   }
 
+  // what shares an energy gains and loses it together
+  for (const Force<D>& force : model_.forces) {
+    if (!shared(force)) continue;
+    int first = -1;
+    for (const Subject<D>& subject : force.subjects) {
+      if (!counts(subject.body)) continue;
+      if (first < 0) first = subject.body;
+      islands_.join(first, subject.body), shares_[std::size_t(subject.body)] = 1;
+    }
+    const auto stays = [&](const Subject<D>& subject) { return !counts(subject.body); };
+    if (first >= 0 && std::any_of(force.subjects.begin(), force.subjects.end(), stays))
+      rooted_[std::size_t(first)] = 1;
+  }
+
   // in flight the scheme's own error under a force is no contact's
   for (int i = 0; forces_.any() && i < n; ++i) tied_[i] = tied_[i] || forces_.push(i);
 
@@ -198,6 +221,8 @@ void EnergyGuard<D>::gather(const State<D>& state) {
     Island& it = island(i);
     const double m = weights_[i].mass;
     it.gain += gain(i), it.kinetic += kinetic(state, i), it.mass += m;
+    // of so many that fly, the scheme's own error is more than what contacts add
+    if (shares_[std::size_t(i)]) it.granted += kShared * 0.5 * m * v_[std::size_t(i)].squaredNorm();
     it.granted += granted_[i] * m * g_ * model_.scale;
     it.momentum += m * state.v[i], it.middle += m * state.x[i];
     Bound& group = bound_[groups_.root(i)];
@@ -272,11 +297,7 @@ void EnergyGuard<D>::move_as_one(const State<D>& state) {
     const AngularVec<D> w =
         least > 0 ? AngularVec<D>(it.inertia.inverse() * it.turning) : AngularVec<D>(AngularVec<D>::Zero());
     const double apart = it.kinetic - 0.5 * it.momentum.squaredNorm() / it.mass - 0.5 * w.dot(it.turning);
-    // too little relative motion to absorb the gain: scale the whole motion
-    if (apart > it.gain)
-      it.kinetic = apart, it.turning = w;
-    else
-      it.rooted = true;
+    it.kinetic = apart, it.turning = w;
   }
 }
 
@@ -316,8 +337,9 @@ double EnergyGuard<D>::take_back(State<D>& state, bool lower) {
     if (!it.touched || it.driven || (it.chained && !it.rooted) || !(it.gain > 0) || it.more != 0) continue;
     const double has = std::max(it.kinetic, 0.0);
     it.keeps = has > it.gain ? std::sqrt(1 - it.gain / has) : 0;
-    if (!it.rooted || it.gain <= has) continue;
-    if (lower && it.height > 0) {
+    if (it.gain <= has) continue;
+    // where nothing holds it, what its parts have not among themselves stays: momenta go first
+    if (it.rooted && lower && it.height > 0) {
       it.lowers = std::min(1.0, (it.gain - has) / it.height);
     } else {
       left += it.gain - has;

@@ -96,6 +96,7 @@ class EnergyGuard {
   std::vector<double> springs_before_, springs_now_;  // J: of springs, then of those
   Islands islands_, groups_;
   std::vector<char> touched_, rooted_, tied_, jointed_, held_;
+  std::vector<char> shares_;     // one a body: a force between bodies acts on it
   std::vector<char> carried_;    // one a body: something that is moved, or a belt, works on it
   std::vector<double> granted_;  // one a body
   std::vector<Island> sums_;     // at the lowest of their bodies

@@ -33,6 +33,7 @@ struct Contact {
   double gap = 0;                   // m, negative: inside
   Vec<D> force = Vec<D>::Zero();    // on a, N
   Vec<D> impulse = Vec<D>::Zero();  // on a, N s, of the impacts in the last step
+  Vec<D> before = Vec<D>::Zero();   // the force in the step before, where a solver asks for it, N
 
   bool operator==(const Contact&) const = default;
 };

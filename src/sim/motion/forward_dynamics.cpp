@@ -21,6 +21,7 @@ namespace obscura::sim {
 
 namespace {
 
+constexpr std::size_t kRateOfStage[] = {3, 5, 7, 9};  // rows of Stages, by Runge-Kutta
 constexpr int kTurningPiece = 64;  // bodies that turn, of which one thread takes so many at a time
 
 }  // namespace
@@ -338,8 +339,14 @@ void ForwardDynamics<D>::piece(Integrate* integrate, State<D>& state, double t, 
                                System& rates) {
   const int n = int(bodies_.size()), still = n - turning_;
   load(state);
+  stage_ = 0;
   integrate(rates, t, h, d_, v_, stages);
   if (model_.integrator == Integrator::rk4 && rates.smooth()) {
+    // contacts press anew in each step, and whatever they do in it is not the springs'
+    for (std::size_t k = 0; k < from_contacts_.size() && !bearing_.empty(); ++k) {
+      const std::span<double> rate = stages.row(kRateOfStage[k], v_.size());
+      for (std::size_t i = 0; i < rate.size(); ++i) rate[i] -= from_contacts_[k][i];
+    }
     const double least = kFaintest * model_.scale;
     note_roughness(state.limits_met, state.step,
                    roughness({bodies_.size(), D, D, 1}, h, v_, least, stages, rates.tied()));
@@ -496,11 +503,16 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
     if (tie.b.drive >= 0) power += force.dot(b.velocity);
   }
   for (const JointTie& tie : joint_ties_) power += push_joint(tie, v_rate);
-  for (const PersistentTie& tie : bearing_) {
-    const BodyMotion<D>&a = motion_of(tie.a), &b = motion_of(tie.b);
-    const auto [force, point] = tie.contact.at(a, b);
-    if (tie.a.member >= 0) push(tie.a.member, {moment<D>(point - a.x, force), force}, v_rate);
-    if (tie.b.member >= 0) push(tie.b.member, {moment<D>(b.x - point, force), -force}, v_rate);
+  if (!bearing_.empty()) {
+    std::vector<double>& gives = from_contacts_[std::size_t(stage_++) % from_contacts_.size()];
+    gives.assign(v_rate.size(), 0.0);
+    for (const PersistentTie& tie : bearing_) {
+      const BodyMotion<D>&a = motion_of(tie.a), &b = motion_of(tie.b);
+      const auto [force, point] = tie.contact.at(a, b);
+      if (tie.a.member >= 0) push(tie.a.member, {moment<D>(point - a.x, force), force}, gives);
+      if (tie.b.member >= 0) push(tie.b.member, {moment<D>(b.x - point, force), -force}, gives);
+    }
+    for (std::size_t i = 0; i < gives.size(); ++i) v_rate[i] += gives[i];
   }
   for (const int explosion : acting_) {
     for (int i = 0; i < int(all_.size()); ++i)

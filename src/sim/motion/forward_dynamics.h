@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -169,6 +170,8 @@ class ForwardDynamics final : public System {
   std::vector<int> sprung_;      // joints with a spring
   std::vector<JointTie> joint_ties_;
   std::vector<PersistentTie> bearing_;
+  std::array<std::vector<double>, 4> from_contacts_;  // of v', what these gave in the last stages
+  int stage_ = 0;
   bool ever_ = false, leaves_flying_ = false;
   bool only_forces_ = false, flying_ = false;  // nothing else of the model ties; all that is gathered flies
   Blasts<D> blasts_;

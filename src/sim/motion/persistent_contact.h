@@ -19,12 +19,33 @@ struct PersistentContact {
   bool slides = false;           // its friction is against the slip, and turns with that
   Vec<D> belt = Vec<D>::Zero();  // m/s: what belts add to the slip of a
 
+  // where sharp edges and corners meet, their features tell no normal: it goes along with a, in whose frame
+  // these are
+  bool sharp = false;
+  Vec<D> point_on_a = Vec<D>::Zero(), normal_on_a = Vec<D>::Zero();
+
+  /// To be called where the step begins.
+  void begin(const BodyMotion<D>& a_at) {
+    using Kind = typename ContactCandidate<D>::Kind;
+    const bool round = gap.radius_a + gap.radius_b > 0;
+    sharp = gap.kind == Kind::edges ||
+            (!round && (gap.kind == Kind::corners || gap.kind == Kind::corner_at_edge_a ||
+                        gap.kind == Kind::corner_at_edge_b));
+    if (!sharp) return;
+    point_on_a = a_at.room_from_body.transpose() * (point - a_at.x);
+    normal_on_a = a_at.room_from_body.transpose() * normal;
+  }
+
   struct Push {
     Vec<D> force, point;  // on a, N; where, in the room
   };
   /// As the bodies stand and move within the step.
   Push at(const BodyMotion<D>& a_at, const BodyMotion<D>& b_at) const {
-    const EvaluatedContact<D> now = evaluate(gap, a_at, b_at);
+    EvaluatedContact<D> now;
+    if (sharp)
+      now.normal = a_at.arm(normal_on_a), now.point = a_at.x + a_at.arm(point_on_a);
+    else
+      now = evaluate(gap, a_at, b_at);
     // by the least turn from the one normal to the other: f + u x f + u x (u x f) / (1 + n . n')
     const double cos = normal.dot(now.normal);
     if (!(cos > 0)) return {force, now.point};
@@ -35,7 +56,8 @@ struct PersistentContact {
   }
   /// The force where the step begins, as the bodies move where it ends.
   Vec<D> ended(const BodyMotion<D>& a_at, const BodyMotion<D>& b_at) const {
-    return against_slip(force, normal, evaluate(gap, a_at, b_at).point, a_at, b_at);
+    const Vec<D> p = sharp ? Vec<D>(a_at.x + a_at.arm(point_on_a)) : evaluate(gap, a_at, b_at).point;
+    return against_slip(force, normal, p, a_at, b_at);
   }
 
  private:

@@ -61,7 +61,7 @@ void fields(Visit& visit, EventLog& it) {
 template <class Visit, int D>
 void fields(Visit& visit, Contact<D>& it) {
   visit(it.key.a), visit(it.key.b), visit(it.key.feature), visit(it.touching), visit(it.point);
-  visit(it.normal), visit(it.gap), visit(it.force), visit(it.impulse);
+  visit(it.normal), visit(it.gap), visit(it.force), visit(it.impulse), visit(it.before);
 }
 template <class Visit, int D>
 void fields(Visit& visit, State<D>& it) {

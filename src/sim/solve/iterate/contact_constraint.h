@@ -17,6 +17,7 @@ struct ContactConstraint {
   double normal_impulse = 0;                // N s, along n
   Vec<D> tangent_impulse = Vec<D>::Zero();  // N s
   Vec<D> impact_impulse = Vec<D>::Zero();   // N s, of impacts within the substep
+  Vec<D> before = Vec<D>::Zero();           // N: the force of the last substep
   Vec<D> belt = Vec<D>::Zero();             // m/s: what belts add to the slip of a against b
   Vec<D> drift = Vec<D>::Zero();  // m/s: what arms that turn within the substep add to it at its end
   int renewals = 0;               // of its features, since the substep began

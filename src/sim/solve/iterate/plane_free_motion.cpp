@@ -75,6 +75,7 @@ void PlaneIterative::find_bearing(const State<D>& state, double h) {
       contact.a = pair.a, contact.b = std::max(pair.b, -1);
       contact.gap = candidate(g, lane, k);
       contact.normal = {at.nx, at.ny}, contact.point = {at.x, at.y}, contact.force = force;
+      contact.begin(begun(pair.a));
     }
   }
   find_borne(state, h);

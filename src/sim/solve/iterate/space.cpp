@@ -300,6 +300,7 @@ void SpaceIterative::set_aims(int begin, int end, const State<D>& state, double 
     }
     while (known != state.contacts.end() && known->key < touch.key) ++known;
     if (known == state.contacts.end() || known->key != touch.key) continue;
+    touch.before = known->force;
     touch.normal_impulse = std::max(0.0, h * known->force.dot(touch.n));
     touch.tangent_impulse = h * (known->force - touch.n * touch.n.dot(known->force));
     const double size = std::sqrt(touch.tangent_impulse.squaredNorm()),
@@ -558,7 +559,7 @@ Contact<3> SpaceIterative::contact(const ContactConstraint& touch, double h) con
   Contact<D> it;
   it.key = touch.key, it.point = touch.point, it.normal = touch.n, it.gap = touch.gap;
   const Vec<D> impulse = touch.normal_impulse * touch.n + touch.tangent_impulse;
-  it.force = impulse / h;
+  it.force = impulse / h, it.before = touch.before;
   if (touch.bounces && touch.least > 0) it.impulse = impulse;
   it.impulse += touch.impact_impulse;
   it.touching =

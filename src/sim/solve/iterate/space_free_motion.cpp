@@ -2,6 +2,7 @@
 // These are taken out again, so that the iterations find them anew.
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "sim/math/exponential.h"
@@ -12,7 +13,13 @@ namespace obscura::sim {
 
 namespace {
 
+constexpr double kLasts = 2;        // times what it was before: a force that is more was of a blow
 constexpr double kSliding = 0.999;  // of the square of what friction can: more slides
+
+Vec<3> lasting(const Contact<3>& contact) {
+  const double now = contact.force.squaredNorm(), before = kLasts * kLasts * contact.before.squaredNorm();
+  return now <= before ? contact.force : Vec<3>(std::sqrt(before / now) * contact.force);
+}
 
 }  // namespace
 
@@ -26,15 +33,16 @@ void SpaceIterative::find_bearing(const State<D>& state, double h) {
     if (!bears(touch.a, touch.b)) continue;
     while (known != state.contacts.end() && known->key < touch.key) ++known;
     if (known == state.contacts.end()) break;
-    if (known->key != touch.key || known->force.isZero(0)) continue;
+    if (known->key != touch.key || known->force.isZero(0) || known->before.isZero(0)) continue;
     PersistentContact<D>& contact = bearing_.emplace_back();
     contact.a = touch.a, contact.b = touch.b == n ? -1 : touch.b;
     contact.gap = features_[i], contact.belt = touch.belt;
-    contact.normal = touch.n, contact.point = touch.point, contact.force = known->force;
+    contact.normal = touch.n, contact.point = touch.point, contact.force = lasting(*known);
+    contact.begin(stances_[std::size_t(touch.a)]);
     // as long as friction does not bring it to rest
     const Vec<D> slips = slip(touch);
-    const double pressed = touch.n.dot(known->force);
-    const Vec<D> rubs = known->force - pressed * touch.n;
+    const double pressed = touch.n.dot(contact.force);
+    const Vec<D> rubs = contact.force - pressed * touch.n;
     const double stops = h * (moving_[touch.a].inverse_mass + moving_[touch.b].inverse_mass);
     contact.slides =
         rubs.squaredNorm() > kSliding * touch.mu * touch.mu * pressed * pressed &&
