@@ -772,5 +772,26 @@ TEST(Forces, WhatTurnsAsOneKeepsItsMomentum) {
   }
 }
 
+// What a body that is moved attracts takes energy from it, also while it touches something: against small
+// steps.
+TEST(Forces, AMovedBodyGivesEnergyToWhatItAttracts) {
+  double x = 0, v = 0;
+  const double h = 1e-5;
+  for (int i = 0; i < 50000; ++i) {
+    const double away = 6 - 2 * (i + 0.5) * h - (x + 0.5 * h * v);
+    v += h * 400 * away / std::pow(away * away + 0.2 * 0.2, 1.5), x += h * v;
+  }
+  for (const Manner& manner : kManners) {
+    const TextRun scene(
+        plane_without_walls(manner, "gravity = [0, 0]\ngravitation = 1") +
+        disc("sun", 400, 0.5, "position = [6, 0]\nmotion = { x = '-2*t' }") +
+        "[[box]]\nname = 'a'\nsize = [0.4, 0.4]\nmass = 1\nelasticity = 0\nfriction = 0\nposition "
+        "= [0, -0.2]\n[[box]]\nname = 'b'\nsize = [0.4, 0.4]\nmass = 1\nelasticity = "
+        "0\nfriction = 0\nposition = [0, 0.2]\n");
+    const sim::Snapshot now = scene.at(0.5);
+    for (const std::size_t i : {1, 2}) EXPECT_NEAR(now.bodies[i].velocity.x(), v, 1e-3 * v) << manner.name;
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

@@ -32,17 +32,20 @@ Rotation<D> axes(const State<D>& state, int k) {
   return D == 2 ? Rotation<D>(Rotation<D>::Identity()) : rotation<D>(state.turn[k]);
 }
 
-// whether it acts between bodies and has an energy that they share
+// whether it acts between bodies, none of which is moved, and has an energy that they share
 template <int D>
-bool shared(const Force<D>& force) {
+bool shared(const Model<D>& model, const Force<D>& force) {
   return force.on != Force<D>::On::each && !force.center && force.has_potential() &&
-         !(force.formula && force.formula->timed);
+         !(force.formula && force.formula->timed) &&
+         std::none_of(force.subjects.begin(), force.subjects.end(), [&](const Subject<D>& subject) {
+           return subject.body >= 0 && model.bodies[std::size_t(subject.body)].driven;
+         });
 }
 
 // whether a force may give energy that no potential of its subjects tells
 template <int D>
-bool works(const Force<D>& force) {
-  if (shared(force)) return false;
+bool works(const Model<D>& model, const Force<D>& force) {
+  if (shared(model, force)) return false;
   if (force.on != Force<D>::On::each || (force.center && force.center->body >= 0)) return true;
   if (!force.formula) return false;
   return force.formula->potential ? force.formula->timed : force.formula->works && force.formula->feeds;
@@ -55,7 +58,7 @@ EnergyGuard<D>::EnergyGuard(const Model<D>& model)
     : model_(model), g_(std::sqrt(model.gravity.squaredNorm())), forces_(model) {
   driven_.assign(model.bodies.size(), 0);
   for (const Force<D>& force : model.forces) {
-    if (!works(force)) continue;
+    if (!works(model, force)) continue;
     for (const Subject<D>& subject : force.subjects) driven_[std::size_t(subject.body)] = 1;
     if (force.center && force.center->body >= 0) driven_[std::size_t(force.center->body)] = 1;
   }
@@ -194,7 +197,7 @@ void EnergyGuard<D>::gather(const State<D>& state) {
 
   // what shares an energy gains and loses it together
   for (const Force<D>& force : model_.forces) {
-    if (!shared(force)) continue;
+    if (!shared(model_, force)) continue;
     int first = -1;
     for (const Subject<D>& subject : force.subjects) {
       if (!counts(subject.body)) continue;

@@ -21,7 +21,6 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr std::size_t kRateOfStage[] = {3, 5, 7, 9};  // rows of Stages, by Runge-Kutta
 constexpr int kTurningPiece = 64;  // bodies that turn, of which one thread takes so many at a time
 
 }  // namespace
@@ -344,7 +343,7 @@ void ForwardDynamics<D>::piece(Integrate* integrate, State<D>& state, double t, 
   if (model_.integrator == Integrator::rk4 && rates.smooth()) {
     // contacts press anew in each step, and whatever they do in it is not the springs'
     for (std::size_t k = 0; k < from_contacts_.size() && !bearing_.empty(); ++k) {
-      const std::span<double> rate = stages.row(kRateOfStage[k], v_.size());
+      const std::span<double> rate = stages.row(kRk4Rates[k], v_.size());
       for (std::size_t i = 0; i < rate.size(); ++i) rate[i] -= from_contacts_[k][i];
     }
     const double least = kFaintest * model_.scale;

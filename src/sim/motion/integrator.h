@@ -58,6 +58,9 @@ struct VelocityRows {
   std::size_t bodies, axes, body, axis, first = 0;
 };
 
+/// The rows of Stages where rk4 leaves v' of its four stages.
+inline constexpr int kRk4Rates[] = {3, 5, 7, 9};
+
 /// How long the last step of rk4(), of h (s), was for the forces. With k the stages' accelerations and |.|
 /// the sum over the axes, of each body
 ///   error = h/6 |k1 - k2 - k3 + k4|      size = |v| + h |k2| + least

@@ -27,10 +27,10 @@ constexpr double kSlowest = 0.02;  // of the fastest body
 void rk4(System& system, double t, double h, std::span<double> d, std::span<double> v, Stages& stages) {
   const std::size_t n = d.size();
   const auto ds = stages.row(0, n), vs = stages.row(1, n);
-  const auto d1 = stages.row(2, n), v1 = stages.row(3, n);
-  const auto d2 = stages.row(4, n), v2 = stages.row(5, n);
-  const auto d3 = stages.row(6, n), v3 = stages.row(7, n);
-  const auto d4 = stages.row(8, n), v4 = stages.row(9, n);
+  const auto d1 = stages.row(2, n), v1 = stages.row(kRk4Rates[0], n);
+  const auto d2 = stages.row(4, n), v2 = stages.row(kRk4Rates[1], n);
+  const auto d3 = stages.row(6, n), v3 = stages.row(kRk4Rates[2], n);
+  const auto d4 = stages.row(8, n), v4 = stages.row(kRk4Rates[3], n);
 
   system.rates(t, d, v, d1, v1);
   axpy(n, d.data(), 0.5 * h, d1.data(), ds.data());
@@ -48,8 +48,8 @@ void rk4(System& system, double t, double h, std::span<double> d, std::span<doub
 
 Roughness roughness(const VelocityRows& rows, double h, std::span<const double> v, double least,
                     Stages& stages, bool tied) {
-  const auto k1 = stages.row(3, v.size()), k2 = stages.row(5, v.size());
-  const auto k3 = stages.row(7, v.size()), k4 = stages.row(9, v.size());
+  const auto k1 = stages.row(kRk4Rates[0], v.size()), k2 = stages.row(kRk4Rates[1], v.size());
+  const auto k3 = stages.row(kRk4Rates[2], v.size()), k4 = stages.row(kRk4Rates[3], v.size());
   const auto look = [&](double more) {
     Roughness found;
     for (std::size_t body = 0; body < rows.bodies; ++body) {

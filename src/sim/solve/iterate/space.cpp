@@ -313,7 +313,7 @@ void SpaceIterative::set_aims(int begin, int end, const State<D>& state, double 
 // Of the blows of a step that are left to the iterations, a body meets the first; what it met after that it
 // may miss, or meet with another speed.
 void SpaceIterative::order_blows(double h) {
-  later_blows_.clear();
+  later_blows_.clear(), given_by_blows_ = 0;
   const int count = int(touches_.size()), none = int(model_.bodies.size());
   if (std::none_of(touches_.begin(), touches_.end(), [](const auto& touch) { return touch.blow; })) return;
   first_blows_.assign(std::size_t(none) + 1, {});
@@ -370,7 +370,8 @@ bool SpaceIterative::strike_later(double h) {
   // what has been given before stays given
   for (ContactConstraint& touch : touches_) {
     if (!touch.blow || !touch.bounces || !(touch.normal_impulse > 0)) continue;
-    touch.impact_impulse += touch.normal_impulse * touch.n + touch.tangent_impulse;
+    const Vec<D> impulse = touch.normal_impulse * touch.n + touch.tangent_impulse;
+    touch.impact_impulse += impulse, given_by_blows_ += given_at(touch, impulse);
     touch.normal_impulse = 0, touch.tangent_impulse.setZero();
     touch.least = std::min(-touch.gap / h, 0.0), touch.bounces = false;
   }

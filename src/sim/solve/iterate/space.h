@@ -249,6 +249,7 @@ class SpaceIterative final : public Iterative<3> {
   void move_driven(State<D>& state, double t, double h);
   double given(const Vec<D>& impulse, const BodyMotion<D>& a, int body_a, const Vec<D>& arm_a,
                const BodyMotion<D>& b, int body_b, const Vec<D>& arm_b) const;
+  double given_at(const ContactConstraint& touch, const Vec<D>& impulse) const;
   void find_strikes(double h);
   double normal_response(const ContactConstraint& touch) const;
   double find_overlaps(const State<D>& state, double h);
@@ -306,6 +307,7 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<int> overlap_begins_, overlap_places_;  // of each level
   std::vector<FirstBlow> first_blows_;
   std::vector<LaterBlow> later_blows_;
+  double given_by_blows_ = 0;                       // J: by what is moved, with the blows before later ones
   std::vector<char> known_force_;                   // of each touch: whether the state has a force for it
   std::vector<double> before_, gained_, returned_;  // of each island's impacts, J
   std::vector<ContactWork> works_;                  // of each touch

@@ -66,22 +66,23 @@ double SpaceIterative::given(const Vec<D>& impulse, const BodyMotion<D>& a, int 
   return sum;
 }
 
-// by the mean of their velocities
-double SpaceIterative::contact_work(StepPart<D>) const {
+// what they give by an impulse of a touch, J: by the mean of their velocities
+double SpaceIterative::given_at(const ContactConstraint& touch, const Vec<D>& impulse) const {
+  if ((!carries(touch.a) && !carries(touch.b)) || impulse.isZero(0)) return 0;
   const auto mean = [&](int body) {
     BodyMotion<D> at;
     if (body == int(model_.bodies.size())) return at;
     at.v = 0.5 * (stances_[body].v + moving_[body].v), at.w = 0.5 * (stances_[body].w + moving_[body].w);
     return at;
   };
-  double sum = 0;
-  for (const ContactConstraint& touch : touches_) {
-    if (!carries(touch.a) && !carries(touch.b)) continue;
-    const Vec<D> impulse = touch.normal_impulse * touch.n + touch.tangent_impulse;
-    if (impulse.isZero(0)) continue;
-    sum += given(impulse, mean(touch.a), touch.a, touch.arm_a, mean(touch.b), touch.b, touch.arm_b) -
-           impulse.dot(touch.belt + 0.5 * touch.drift);
-  }
+  return given(impulse, mean(touch.a), touch.a, touch.arm_a, mean(touch.b), touch.b, touch.arm_b) -
+         impulse.dot(touch.belt + 0.5 * touch.drift);
+}
+
+double SpaceIterative::contact_work(StepPart<D>) const {
+  double sum = given_by_blows_;
+  for (const ContactConstraint& touch : touches_)
+    sum += given_at(touch, touch.normal_impulse * touch.n + touch.tangent_impulse);
   return sum;
 }
 

@@ -108,7 +108,8 @@ void SpaceIterative::find_of(int begin, int end, const Search& search, Found& fo
       } else if (search.number == 0 || !keep_features(a, b, search, old, memo, gaps)) {
         const Body<D>& q = model_.bodies[b];
         Clearance clearance;
-        sim::collide(a, p.shape, stances_[a], b, q.shape, stances_[b], within, Gaps::touching, gaps, clearance);
+        sim::collide(a, p.shape, stances_[a], b, q.shape, stances_[b], within, Gaps::touching, gaps,
+                     clearance);
         if (gaps.empty())
           apart = {clearance, stances_[a].x - stances_[b].x,
                    turned_[std::size_t(a)] + turned_[std::size_t(b)]};
