@@ -174,10 +174,10 @@ void ExactSolver<D>::collect_constraints(const State<D>& state, double fastest) 
   chain_response_.build(rows_, response_, dynamics_.chains());
 }
 
-// builds the blocks of the constraints at the present poses; for impulses without motors and friction in
-// joints
+// Builds the blocks of the constraints at the present poses: of forces; or of impulses, in which motors and
+// friction in joints have a share by how long they last (s), so in blows none.
 template <int D>
-void ExactSolver<D>::build_blocks(bool impulses) {
+void ExactSolver<D>::build_blocks(bool impulses, double last) {
   using Kind = typename Constraint::Kind;
   constexpr double kEndless = std::numeric_limits<double>::infinity();
   blocks_.clear();
@@ -210,18 +210,19 @@ void ExactSolver<D>::build_blocks(bool impulses) {
         const Joint<D>& joint = model_.joints[constraint.of];
         const bool wire = joint.kind == JointKind::wire, by_load = wire || rubs(joint);
         // that of a wire or a rope goes by its load, see rub(); of blows on a wire there is none
-        if (wire) constraint.grip = impulses ? 0 : joint.friction;
+        if (wire) constraint.grip = impulses && last == 0 ? 0 : joint.friction;
         const double most = by_load ? 0 : constraint.kind == Kind::motor ? joint.motor->most : joint.friction;
         const double slip =
             row_velocity(constraint.first) - (constraint.kind == Kind::motor ? aim(constraint).speed : 0);
-        block.law = Law::bounded, block.lower = -most, block.upper = most;
+        block.law = Law::bounded, block.upper = impulses ? last * most : most, block.lower = -block.upper;
         constraint.rubs = !by_load || impulses ? 0 : slip > still_speed_ ? 1 : slip < -still_speed_ ? -1 : 0;
-        if (impulses)
-          block.lower = block.upper = 0;
-        else if (slip > still_speed_)
+        if (impulses) {
+          // whatever slips: it may come to an end
+        } else if (slip > still_speed_) {
           block.upper = -most;
-        else if (slip < -still_speed_)
+        } else if (slip < -still_speed_) {
           block.lower = most;
+        }
         blocks_.push_back(block);
         break;
       }

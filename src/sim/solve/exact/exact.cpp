@@ -514,6 +514,18 @@ double ExactSolver<D>::motor_power() const {
   return sum;
 }
 
+// b_: how fast each row goes after h, next to its aim there, by accelerations `rate` without forces of rows
+template <int D>
+void ExactSolver<D>::predict_velocities(std::span<const double> rate, double h) {
+  b_.resize(Eigen::Index(rows_.size()));
+  for (int i = 0; i < int(rows_.size()); ++i)
+    b_[i] = row_velocity(i) + h * (row_acceleration(i, rate) + rows_[i].velocity_product);
+  for (const Constraint& constraint : constraints_) {
+    const typename Motors<D>::Aim its = aim(constraint);
+    b_[constraint.first] -= its.speed + h * its.rate;
+  }
+}
+
 // the rest of a step at once: impulses instead of forces, so that nothing that touches comes closer at its
 // end
 template <int D>
@@ -523,12 +535,11 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   update_poses(state);
   collect_constraints(state);
   save(state, interval_.begun);
-  build_blocks(true);
+  build_blocks(true, h);
   find_islands();
-  b_.resize(Eigen::Index(rows_.size()));
   const auto rate = dynamics_.accelerations(state, t);
-  for (int i = 0; i < int(rows_.size()); ++i)
-    b_[i] = row_velocity(i) + h * (row_acceleration(i, rate) + rows_[i].velocity_product);
+  predict_velocities(rate, h);
+  for (Constraint& constraint : constraints_) constraint.began = row_velocity(constraint.first);
   // Start from the forces of the step before only if nearly all is at rest: with them the iterations would go
   // on holding bodies that have begun to fall.
   double fastest = 0;
@@ -547,10 +558,16 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   for (double& change : scratch_.chain_change) change *= h;
   chains.jump(state, scratch_.chain_change, false);
   warm_start_rows(fastest < kCreep * limits_.unit_speed ? h : 0);
-  solve();
-  for (int i = 0; i < kMostRubs && rub(i); ++i) solve();
+  if (!solve()) solve_roughly();
+  for (int i = 0; i < kMostRubs && rub(i); ++i)
+    if (!solve()) solve_roughly();
   apply_impulses(state, false);
   for (int i = 0; i < int(rows_.size()); ++i) progress_.given += f_[i] * given(i);
+  update_poses(state);
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind == Constraint::Kind::motor)
+      progress_.given += 0.5 * f_[constraint.first] * (constraint.began + row_velocity(constraint.first));
+  }
   for (const int body : members) {
     state.x[body] += 0.5 * h * (interval_.begun.v[body] + state.v[body]);
     if (const int k = turning(state, body); k >= 0)

@@ -71,6 +71,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     // of friction that goes by a load, of a wire or a rope: the sign of the motion that it is against, how
     // much of the load it is at most, and the bounds that were tried and found last
     double rubs = 0, grip = 0, tried = 0, needed = 0;
+    double began = 0;  // how fast its first row went before an impulse, m/s or rad/s
   };
 
   // poses and velocities
@@ -284,7 +285,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void collect_constraints(const State<D>& state, double fastest = 1e300);
   void collect_returning(const State<D>& state, double t);
   void build_jacobian(Constraint& constraint, const JointTurn<D>& turn);
-  void build_blocks(bool impulses);
+  void build_blocks(bool impulses, double last = 0);
+  void predict_velocities(std::span<const double> rate, double h);
   static constexpr int kMostRubs = 50;  // rounds of friction that goes by a load
   bool solve_laws(std::span<const double> rate);
   bool begin_to_slip();

@@ -74,10 +74,9 @@ double ExactSolver<D>::begin_slip_directions(State<D>& state, double t, double h
 template <int D>
 void ExactSolver<D>::aim_slow_slips(State<D>& state, double t, double h) {
   scratch_.blocks = blocks_, scratch_.modes = modes_, scratch_.f = f_;
-  build_blocks(true);
+  build_blocks(true, h);
   const auto rate = dynamics_.accelerations(state, t);
-  for (int i = 0; i < int(rows_.size()); ++i)
-    b_[i] = row_velocity(i) + h * (row_acceleration(i, rate) + rows_[i].velocity_product);
+  predict_velocities(rate, h);
   warm_start_rows(h);
   const double enough = std::exchange(cone_.enough, kEnough);
   const int patience = std::exchange(cone_.patience, kSlipPatience);
