@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "sim/energy/energy.h"
 #include "sim/model/body_motion.h"
@@ -57,6 +58,8 @@ template <int D>
 EnergyGuard<D>::EnergyGuard(const Model<D>& model)
     : model_(model), g_(std::sqrt(model.gravity.squaredNorm())), forces_(model) {
   driven_.assign(model.bodies.size(), 0);
+  all_.resize(model.bodies.size());
+  std::iota(all_.begin(), all_.end(), 0);
   for (const Force<D>& force : model.forces) {
     if (!works(model, force)) continue;
     for (const Subject<D>& subject : force.subjects) driven_[std::size_t(subject.body)] = 1;
@@ -103,7 +106,8 @@ double EnergyGuard<D>::in_spring(const State<D>& state, int i) const {
 template <int D>
 void EnergyGuard<D>::open(const State<D>& state, double t) {
   t_ = t;
-  if (forces_.potentials()) forces_.gather(state);
+  // with what is fixed, which has its part of what it attracts
+  if (forces_.potentials()) forces_.gather(state, all_);
   const int n = int(weights_.size());
   x_ = state.x, v_ = state.v, spin_ = state.spin, broken_ = state.broken, before_.resize(n), now_.resize(n),
   booked_.assign(n, 0);
@@ -112,6 +116,36 @@ void EnergyGuard<D>::open(const State<D>& state, double t) {
   }
   add_fields(state, before_);
   for (int i = 0; i < int(springs_before_.size()); ++i) springs_before_[i] = in_spring(state, i);
+}
+
+template <int D>
+double EnergyGuard<D>::book_ways(State<D>& state, const std::vector<Vec<D>>& ways) {
+  const int n = int(weights_.size());
+  double sum = 0;
+  bool any = false;
+  for (int i = 0; i < n; ++i) {
+    const Vec<D>& way = ways[std::size_t(i)];
+    any = any || !way.isZero(0);
+    const double work = -model_.bodies[std::size_t(i)].mass * model_.gravity.dot(way);
+    book(i, work), sum += work;
+  }
+  if (!any || (springs_before_.empty() && !forces_.potentials())) return sum;
+  // what is there now, less what there would be without them
+  const auto add = [&](double sign) {
+    std::fill(now_.begin(), now_.end(), 0.0);
+    add_fields(state, now_);
+    for (int i = 0; i < n; ++i) book(i, sign * now_[std::size_t(i)]), sum += sign * now_[std::size_t(i)];
+    for (int i = 0; i < int(springs_before_.size()); ++i) {
+      const double energy = sign * in_spring(state, i);
+      springs_before_[std::size_t(i)] += energy, sum += energy;
+    }
+  };
+  add(1);
+  placed_ = state.x;
+  for (int i = 0; i < n; ++i) state.x[std::size_t(i)] -= ways[std::size_t(i)];
+  add(-1);
+  state.x = placed_;
+  return sum;
 }
 
 template <int D>
@@ -161,7 +195,7 @@ void EnergyGuard<D>::gather(const State<D>& state) {
   const auto counts = [&](int body) { return body >= 0 && weights_[body].mass > 0; };
   tied_.assign(n, 0), jointed_.assign(n, 0), held_.assign(n, 0), shares_.assign(n, 0);
   const bool exact = model_.integrator == Integrator::rk4;  // others may win by their law
-  groups_.reset(n), bound_.assign(n, {}), sums_.assign(n, {});
+  groups_.reset(n), bound_.assign(n, {}), sums_.assign(n, {}), attracts_.assign(n, -1);
   const auto link = [&](int a, int b, bool fast) {
     for (const int body : {a, b}) {
       if (!counts(body)) continue;
@@ -204,9 +238,15 @@ void EnergyGuard<D>::gather(const State<D>& state) {
       if (first < 0) first = subject.body;
       islands_.join(first, subject.body), shares_[std::size_t(subject.body)] = 1;
     }
-    const auto stays = [&](const Subject<D>& subject) { return !counts(subject.body); };
-    if (first >= 0 && std::any_of(force.subjects.begin(), force.subjects.end(), stays))
+    for (const Subject<D>& subject : force.subjects) {
+      if (first < 0 || counts(subject.body)) continue;
       rooted_[std::size_t(first)] = 1;
+      // its part of the energy is theirs
+      if (subject.body < 0) continue;
+      int& others = attracts_[std::size_t(subject.body)];
+      if (others >= 0) islands_.join(others, first);
+      others = first;
+    }
   }
 
   // in flight the scheme's own error under a force is no contact's
@@ -220,6 +260,7 @@ void EnergyGuard<D>::gather(const State<D>& state) {
     return false;
   }();
   for (int i = 0; i < n; ++i) {
+    if (const int others = attracts_[std::size_t(i)]; others >= 0) island(others).gain += gain(i);
     if (!counts(i)) continue;
     Island& it = island(i);
     const double m = weights_[i].mass;

@@ -21,6 +21,9 @@ class EnergyGuard {
   void open(const State<D>& state, double t = 0);
   /// Records work (J) that was done on a body on purpose since then: it may stay.
   void book(int body, double work) { booked_[body] += work; }
+  /// The same of ways (m, one a body) by which `state` has been put right since then: against gravity, fields
+  /// and springs. Returns its sum, J.
+  double book_ways(State<D>& state, const std::vector<Vec<D>>& ways);
   /// Whether the total energy has risen by more than rounding, bodies driven by hands, motors and explosions
   /// included.
   bool risen(const State<D>& state);
@@ -83,12 +86,14 @@ class EnergyGuard {
   const Model<D>& model_;
   const double g_;  // m/s^2
   Forces<D> forces_;
+  std::vector<int> all_;      // the numbers of all bodies
   std::vector<char> driven_;  // one a body: a force works on it whose energy is not known here
   std::vector<BodyMotion<D>> motions_;
   double t_ = 0;
   std::vector<Weight> weights_;
   double size_ = 0;            // J: m g times the room's height
   std::vector<Vec<D>> x_, v_;  // at open()
+  std::vector<Vec<D>> placed_;
   std::vector<AngularVec<D>> spin_;
   std::vector<char> broken_;                          // joints, at open()
   std::vector<double> before_, now_, booked_;         // one a body, J
@@ -98,6 +103,7 @@ class EnergyGuard {
   std::vector<char> touched_, rooted_, tied_, jointed_, held_;
   std::vector<char> shares_;     // one a body: a force between bodies acts on it
   std::vector<char> carried_;    // one a body: something that is moved, or a belt, works on it
+  std::vector<int> attracts_;    // one a body that counts as still: one of those with which it shares a force
   std::vector<double> granted_;  // one a body
   std::vector<Island> sums_;     // at the lowest of their bodies
   std::vector<Bound> bound_;     // likewise

@@ -23,4 +23,12 @@ BodyMotion<D> body_motion(const State<D>& state, int body) {
   return at;
 }
 
+/// A body, of this orientation, after h s at its velocity.
+template <int D>
+BodyMotion<D> ahead(BodyMotion<D> at, const Orientation<D>& turn, double h) {
+  at.x += h * at.v;
+  if (!at.w.isZero(0)) at.room_from_body = rotation<D>(turned<D>(turn, AngularVec<D>(h * at.w)));
+  return at;
+}
+
 }  // namespace obscura::sim

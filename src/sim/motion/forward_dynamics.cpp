@@ -209,9 +209,21 @@ template <int D>
 void ForwardDynamics<D>::bear(const State<D>& state, std::span<const PersistentContact<D>> contacts) {
   bearing_.clear();
   for (const PersistentContact<D>& contact : contacts) {
-    const PersistentTie tie{contact, joint_side(state, contact.a), joint_side(state, contact.b)};
+    const PersistentTie tie{contact, joint_side(state, contact.a), joint_side(state, contact.b),
+                            coasting(state, contact.a), coasting(state, contact.b)};
     if (tie.a.member >= 0 || tie.b.member >= 0) bearing_.push_back(tie);
   }
+}
+
+template <int D>
+typename ForwardDynamics<D>::Coasting ForwardDynamics<D>::coasting(const State<D>& state, int body) const {
+  Coasting it;
+  if (body < 0 || member_[std::size_t(body)] >= 0 || drives_.number(body) >= 0) return it;
+  if (model_.bodies[std::size_t(body)].fixed || (!state.frozen.empty() && state.frozen[std::size_t(body)]))
+    return it;
+  it.goes = true, it.begun = body_motion(state, body);
+  if (const int k = turning(state, body); k >= 0) it.turn = state.turn[std::size_t(k)];
+  return it;
 }
 
 // the tied bodies of a state as d = 0 and v
@@ -300,7 +312,7 @@ int ForwardDynamics<D>::pieces(const State<D>& state, double h) const {
 template <int D>
 void ForwardDynamics<D>::step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages,
                               System* with) {
-  work_ = 0;
+  work_ = 0, begun_ = t;
   if (all_.empty()) return;
   if (flying_ && !with && bearing_.empty() && !blasting(state)) return fly(integrate, state, t, h, stages);
   posed_ = with != nullptr;
@@ -506,7 +518,10 @@ void ForwardDynamics<D>::rates(double t, std::span<const double> d, std::span<co
     std::vector<double>& gives = from_contacts_[std::size_t(stage_++) % from_contacts_.size()];
     gives.assign(v_rate.size(), 0.0);
     for (const PersistentTie& tie : bearing_) {
-      const BodyMotion<D>&a = motion_of(tie.a), &b = motion_of(tie.b);
+      const auto at = [&](const JointSide& side, const Coasting& coasts) {
+        return coasts.goes ? ahead<D>(coasts.begun, coasts.turn, t - begun_) : motion_of(side);
+      };
+      const BodyMotion<D> a = at(tie.a, tie.a_coasts), b = at(tie.b, tie.b_coasts);
       const auto [force, point] = tie.contact.at(a, b);
       if (tie.a.member >= 0) push(tie.a.member, {moment<D>(point - a.x, force), force}, gives);
       if (tie.b.member >= 0) push(tie.b.member, {moment<D>(b.x - point, force), -force}, gives);

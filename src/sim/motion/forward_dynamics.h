@@ -123,9 +123,16 @@ class ForwardDynamics final : public System {
     int joint;
     JointSide a, b;
   };
+  // what nothing but contacts moves goes on as it did where the step began
+  struct Coasting {
+    BodyMotion<D> begun;
+    Orientation<D> turn = no_rotation<D>();
+    bool goes = false;
+  };
   struct PersistentTie {
     PersistentContact<D> contact;
     JointSide a, b;
+    Coasting a_coasts, b_coasts;
   };
   // a coupled body that the ground brakes
   struct Braked {
@@ -147,6 +154,7 @@ class ForwardDynamics final : public System {
   void fly(Integrate* integrate, State<D>& state, double t, double h, Stages& stages);
   void piece(Integrate* integrate, State<D>& state, double t, double h, Stages& stages, System& rates);
   Moving moving(const Hold& hold, double t) const;
+  Coasting coasting(const State<D>& state, int body) const;
   JointSide joint_side(const State<D>& state, int body) const;
   const BodyMotion<D>& motion_of(const JointSide& side) const;
   AngularVec<D> rounds_of(const JointSide& side) const;
@@ -172,6 +180,7 @@ class ForwardDynamics final : public System {
   std::vector<PersistentTie> bearing_;
   std::array<std::vector<double>, 4> from_contacts_;  // of v', what these gave in the last stages
   int stage_ = 0;
+  double begun_ = 0;  // s: the step
   bool ever_ = false, leaves_flying_ = false;
   bool only_forces_ = false, flying_ = false;  // nothing else of the model ties; all that is gathered flies
   Blasts<D> blasts_;

@@ -112,12 +112,10 @@ template <int D>
 void ContactStep<D>::take_energy_back(State<D>& state) {
   // the work of pushing bodies out of overlaps is recorded and stays
   if (const Vec<D>* ways = solver_->corrections()) {
-    for (int i = 0; i < int(model_.bodies.size()); ++i) {
-      if (lone_bodies_ && lone_bodies_->moved(i)) continue;
-      const double work = -model_.bodies[i].mass * model_.gravity.dot(ways[i]);
-      energy_guard_.book(i, work);
-      state.ledger.displacement += work;
-    }
+    pushed_.assign(ways, ways + model_.bodies.size());
+    for (int i = 0; i < int(pushed_.size()); ++i)
+      if (lone_bodies_ && lone_bodies_->moved(i)) pushed_[std::size_t(i)].setZero();
+    state.ledger.displacement += energy_guard_.book_ways(state, pushed_);
   }
   // with overlap = "separate" bodies that overlap at the start may be lifted
   if (model_.overlap == Overlap::separate || !energy_guard_.risen(state)) return;

@@ -48,6 +48,7 @@ class ContactStep {
   bool exact_;
   std::unique_ptr<ContactSolver<D>> solver_;
   EnergyGuard<D> energy_guard_;
+  std::vector<Vec<D>> pushed_;  // m: how far each body has been put right
   std::unique_ptr<LoneBodies<D>> lone_bodies_;  // beside a solver for many
   std::vector<std::pair<int, int>> touched_;
   std::vector<char> jointed_;  // one a body

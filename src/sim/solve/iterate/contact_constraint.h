@@ -21,7 +21,10 @@ struct ContactConstraint {
   Vec<D> belt = Vec<D>::Zero();             // m/s: what belts add to the slip of a against b
   Vec<D> drift = Vec<D>::Zero();  // m/s: what arms that turn within the substep add to it at its end
   int renewals = 0;               // of its features, since the substep began
+  double apart = 0;               // m/s: of that, what its row is faster than its matter was where the
+                                  // last impact of its bodies left it
   bool after = false;             // of a body that had an impact
+  bool rests = false;             // there it hardly closes or parts after it
   bool passes = false;            // however it looks, it does not close with an impact
   bool bounces = false;           // an impact that is left to the iterations
   bool closing = false;           // slowly

@@ -127,19 +127,29 @@ void Iterative<D>::find_borne(const State<D>& state, double h) {
         answered = std::max(answered, share_answered(model_.integrator, tight[std::size_t(body)], h));
     if (answered > kMostAnswered) contact.force *= kMostAnswered / answered;
   }
-  for (const PersistentContact<D>& contact : bearing_) add_borne(contact, contact.force);
+  // as they stand in the middle, where their rows are
+  const auto middle = [&](int body) {
+    if (body < 0) return BodyMotion<D>();
+    BodyMotion<D> at = begun(body);
+    const MovingBody<D>& m = moving_[std::size_t(body)];
+    at.v = velocity(m), at.w = spin(m);
+    return ahead<D>(at, begun_turn(body), 0.5 * h);
+  };
+  for (const PersistentContact<D>& contact : bearing_) {
+    const BodyMotion<D> a = middle(contact.a), b = middle(contact.b);
+    const auto push = contact.at(a, b);
+    add_borne(contact.a, push.force, Vec<D>(push.point - a.x));
+    add_borne(contact.b, -push.force, Vec<D>(push.point - b.x));
+  }
 }
 
 template <int D>
-void Iterative<D>::add_borne(const PersistentContact<D>& contact, const Vec<D>& force) {
-  for (const auto& [body, sign] : {std::pair{contact.a, 1.0}, std::pair{contact.b, -1.0}}) {
-    if (body < 0 || !moves(body)) continue;
-    const BodyMotion<D> at = begun(body);
-    Twist<D>& its = borne_[std::size_t(body)];
-    its.v += sign * force / model_.bodies[std::size_t(body)].mass;
-    its.w += angular_response<D>(model_.bodies[std::size_t(body)], at.room_from_body,
-                                 moment<D>(contact.point - at.x, Vec<D>(sign * force)));
-  }
+void Iterative<D>::add_borne(int body, const Vec<D>& force, const Vec<D>& arm) {
+  if (body < 0 || !moves(body)) return;
+  Twist<D>& its = borne_[std::size_t(body)];
+  const Body<D>& of = model_.bodies[std::size_t(body)];
+  its.v += force / of.mass;
+  its.w += angular_response<D>(of, begun(body).room_from_body, moment<D>(arm, force));
 }
 
 template <int D>

@@ -126,9 +126,10 @@ bool PlaneIterative::mostly_quiet() const {
     const ContactBatch& g = batches_[pair.slot / kLanes];
     const int lane = pair.slot % kLanes;
     for (int k = 0; k < pair.touches; ++k) {
-      const plane::TouchRow r = plane::row(g, lane, k, poses_[pair.a], poses_[pair.b]);
+      const int a = g.a[lane], b = g.b[lane];  // a wall is the one after the last
+      const plane::TouchRow r = plane::row(g, lane, k, poses_[a], poses_[b]);
       if (r.gap * g.per_width[lane] >= kNearly) continue;
-      const double passes = std::fabs(plane::normal_speed(r, moving_[pair.a], moving_[pair.b]));
+      const double passes = std::fabs(plane::normal_speed(r, moving_[a], moving_[b]));
       ++all, slow += passes * g.per_width[lane] < kQuiet;
     }
   }
@@ -252,7 +253,7 @@ void PlaneIterative::moderate_warm_start() {
 
 void PlaneIterative::resolve_impacts(StepPart<D> part) {
   const int endless =
-      impacts_.run(fast_, pairs_.all(), batches_, poses_, old_, dv_, moving_, constants_, joints_);
+      impacts_.run(fast_, pairs_.all(), batches_, poses_, middle_, old_, dv_, moving_, constants_, joints_);
   if (endless >= 0) end_of_impacts(model_.bodies[endless].name, part.t, part.h);
   if (!part.state.work.empty()) part.state.work[0] += impacts_.drive_work();
   constants_.least = impacts_.least();
@@ -294,7 +295,14 @@ void PlaneIterative::keep_forces(State<D>& state, bool last) {
         double &p = g.p[k][lane], &q = g.q[k][lane];
         p = before.p[k][lane] + share * (p - before.p[k][lane]);
         q = before.q[k][lane] + share * (q - before.q[k][lane]);
-        if (last) state.contacts[std::size_t(g.first[lane] + k)].force = {p, q};
+        if (!last) continue;
+        Contact<D>& contact = state.contacts[std::size_t(g.first[lane] + k)];
+        contact.force = {p, q};
+        const double pressed = contact.normal.dot(contact.force);
+        if (contact.touching != ContactMode::open || !(pressed > 0)) continue;
+        const Vec<D> rubs = contact.force - pressed * contact.normal;
+        const bool sticks = std::sqrt(rubs.squaredNorm()) < g.mu[lane] * pressed;
+        contact.touching = sticks ? ContactMode::stick : ContactMode::slide;
       }
     }
   }

@@ -110,7 +110,7 @@ class PlaneIterative final : public Iterative<2> {
   void share_free_motion(StepPart<D> part);
   void integrate_jointed(StepPart<D> part);
   void move_driven(StepPart<D> part);
-  void find_drifts(double h);
+  void find_middle(double h);
   void place_driven(State<D>& state);
   void foresee_driven(double t);
   double belt_of(int body) const { return body < 0 ? 0 : model_.bodies[std::size_t(body)].belt[0]; }
@@ -136,6 +136,7 @@ class PlaneIterative final : public Iterative<2> {
 
   // One entry a body, and one more that never moves, for walls
   std::vector<plane::Pose> poses_, begun_;  // now, and at the start of the substep
+  std::vector<plane::Pose> middle_;         // in the middle of the substep, as bodies go where it begins
   std::vector<double> turns_;               // the angles of poses_, rad
   std::vector<double> ii_;                  // 1/(kg m^2); 0: asleep or fixed
   std::vector<Motion> old_;                 // moving_ at the start of the substep

@@ -223,7 +223,7 @@ void PlaneIterative::fill_lane(int i, const State<D>& state) {
   g.sight[lane] = sight, g.mu[lane] = pair.material.friction, g.radius[lane] = radius;
   g.per_width[lane] = 1 / std::max(2 * thin, kPointWidth * model_.scale);
   const double belt = belt_of(pair.a) + belt_of(pair.b);
-  g.belt[lane] = g.surface[0][lane] = g.surface[1][lane] = belt;
+  g.belt[lane] = belt;
   const bool carried = belt != 0 || drives_.number(pair.a) >= 0 || drives_.number(pair.b) >= 0;
   g.belts = static_cast<unsigned char>(carried ? g.belts | bit : g.belts & ~bit);
   g.far[lane] = far, g.calm[lane] = round ? -1 : pair.touches == 1 ? 1e300 : kCalm * thin / span_;
@@ -269,8 +269,8 @@ int PlaneIterative::begin_rest(const Sleep<D>::Island& island, const State<D>& s
   }
   constants_ = {h, 1e300, 0, {}, nullptr};
   old_.assign(old_.size(), {});
-  plane::warm_start(rest_batches_.data(), int(rest_batches_.size()), poses_.data(), old_.data(),
-                    moving_.data(), constants_, slow_, fast_);
+  plane::warm_start(rest_batches_.data(), int(rest_batches_.size()), poses_.data(), poses_.data(),
+                    old_.data(), moving_.data(), constants_, slow_, fast_);
   return std::clamp(kRestPairs / std::max(1, int(rest_.size())), kFewestAtRest, kMostAtRest);
 }
 

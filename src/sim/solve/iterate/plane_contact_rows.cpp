@@ -30,7 +30,9 @@ struct WideRow {
   V nx, ny, x, y, gap, na, nb, ta, tb;
 };
 
-template <class V>
+// kMiddle: sharp corners on each other keep the normal with which the substep began; there their distance is
+// next to nothing, and a short way turns it round
+template <class V, bool kMiddle = false>
 OBSCURA_INLINE void make(const ContactBatch& g, int lane, int k, const Quad<V>& a, const Quad<V>& b,
                          WideRow<V>& r) {
   // the corner's body, and the face's
@@ -58,7 +60,11 @@ OBSCURA_INLINE void make(const ContactBatch& g, int lane, int k, const Quad<V>& 
         l > 1e-12 * (d + radius + magnitude<V>(fx) + magnitude<V>(fy) + magnitude<V>(cx) + magnitude<V>(cy));
     const V one = V{} + 1.0;
     const V safe = pick<V>(apart, l, one);
-    const V mx = pick<V>(apart, ux / safe, V{}), my = pick<V>(apart, uy / safe, one);
+    V mx = pick<V>(apart, ux / safe, V{}), my = pick<V>(apart, uy / safe, one);
+    if constexpr (kMiddle) {
+      const Mask<V> sharp = radius <= V{};
+      mx = pick<V>(sharp, load<V>(g.ux[k] + lane), mx), my = pick<V>(sharp, load<V>(g.uy[k] + lane), my);
+    }
     const V gap = l - radius, along = d + 0.5 * gap;
     r.gap = pick<V>(two, gap, r.gap);
     r.nx = pick<V>(two, mx, r.nx), r.ny = pick<V>(two, my, r.ny);
@@ -169,8 +175,8 @@ OBSCURA_INLINE V allowed_depth(const ContactBatch& g, int lane, const AllowedOve
 }
 
 template <class V>
-OBSCURA_INLINE bool warm_start_all(ContactBatch* batches, int count, const Pose* poses, const Motion* old,
-                                   Motion* v, const StepConstants& pace, LaneList& closing,
+OBSCURA_INLINE bool warm_start_all(ContactBatch* batches, int count, const Pose* poses, const Pose* middle,
+                                   const Motion* old, Motion* v, const StepConstants& pace, LaneList& closing,
                                    LaneList& impacts) {
   const V h = V{} + pace.h, creep = V{} - pace.min_closing_speed, gain = V{} + pace.gravity_dv, none{};
   const V bend = 0.5 * (h * h);
@@ -180,8 +186,9 @@ OBSCURA_INLINE bool warm_start_all(ContactBatch* batches, int count, const Pose*
     g.struck[0] = g.struck[1] = 0;
     if (!g.used) continue;
     for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) {
-      Quad<V> a, b;
+      Quad<V> a, b, a_middle, b_middle;
       gather(&poses->x, g.a + lane, a), gather(&poses->x, g.b + lane, b);
+      gather(&middle->x, g.a + lane, a_middle), gather(&middle->x, g.b + lane, b_middle);
       const Two<V> before(g, lane, old);
       Two<V> two(g, lane, v);
       const V mu = load<V>(g.mu + lane);
@@ -195,18 +202,29 @@ OBSCURA_INLINE bool warm_start_all(ContactBatch* batches, int count, const Pose*
       const V fastest = v1 + far * w, turns = bend * (far * w2 + 2.0 * w * fastest);
       const V impact_speed = load<V>(g.impact_speed + lane);
       const Mask<V> polygons = load<V>(g.radius + lane) <= none;
+      const V nearby = (V{} + kNearby) / load<V>(g.per_width + lane), belt = load<V>(g.belt + lane);
       Mask<V> slow{}, fast{};
       for (int k = 0; k < 2; ++k) {
         WideRow<V> r;
         make<V>(g, lane, k, a, b, r);
         const V vn = before.along(r.nx, r.ny, r.na, r.nb);
         deep |= r.gap < -allowed;
-        slow |= (vn < creep) & (r.gap + h * vn < none) & (r.gap <= sight);
-        fast |= (vn < impact_speed) & (r.gap + h * (vn - gain) < turns) & (r.gap <= sight);
+        const V px = load<V>(g.p[k] + lane), py = load<V>(g.q[k] + lane);
+        const Mask<V> bears = px * r.nx + py * r.ny > none;
+        const Mask<V> strikes = ~(bears & (vn >= -kLasting * fastest));
+        slow |= strikes & (vn < creep) & (r.gap + h * vn < none) & (r.gap <= sight);
+        fast |= strikes & (vn < impact_speed) & (r.gap + h * (vn - gain) < turns) & (r.gap <= sight);
         if (g.corners[k])
           fast |= mask<V>(g.corners[k], lane) & polygons & (-fastest < impact_speed) &
                   (r.gap < h * (fastest + gain));
-        const V px = load<V>(g.p[k] + lane), py = load<V>(g.q[k] + lane);
+        store<V>(g.gap[k] + lane, r.gap);
+        if (g.corners[k]) store<V>(g.ux[k] + lane, r.nx), store<V>(g.uy[k] + lane, r.ny);
+        const Mask<V> near = r.gap < nearby;
+        const V vt = before.along(-r.ny, r.nx, r.ta, r.tb);
+        make<V, true>(g, lane, k, a_middle, b_middle, r);
+        const V gains = before.along(r.nx, r.ny, r.na, r.nb) - vn;
+        store<V>(g.turns[k] + lane, pick<V>(near, pick<V>(bears, gains, larger<V>(gains, none)), none));
+        store<V>(g.surface[k] + lane, belt + pick<V>(near, before.along(-r.ny, r.nx, r.ta, r.tb) - vt, none));
         const V ln = larger<V>(h * (px * r.nx + py * r.ny), none), most = mu * ln;
         const V lt = larger<V>(smaller<V>(h * (py * r.nx - px * r.ny), most), -most);
         store<V>(g.p[k] + lane, ln), store<V>(g.q[k] + lane, lt);
@@ -328,18 +346,21 @@ OBSCURA_INLINE int iterate_all(ContactBatch* batches, int count, const Pose* pos
       Quad<V> a, b;
       gather(&poses->x, g->a + lane, a), gather(&poses->x, g->b + lane, b);
       WideRow<V> r0, r1;
-      make<V>(*g, lane, 0, a, b, r0), make<V>(*g, lane, 1, a, b, r1);
+      make<V, true>(*g, lane, 0, a, b, r0), make<V, true>(*g, lane, 1, a, b, r1);
+      r0.gap = load<V>(g->gap[0] + lane), r1.gap = load<V>(g->gap[1] + lane);
       Two<V> two(*g, lane, v);
       const V mu = load<V>(g->mu + lane);
       V l0 = load<V>(g->p[0] + lane), t0 = load<V>(g->q[0] + lane);
       V l1 = load<V>(g->p[1] + lane), t1 = load<V>(g->q[1] + lane);
       [[maybe_unused]] const Two<V> begun = two;
       [[maybe_unused]] const V begun_l0 = l0, begun_t0 = t0, begun_l1 = l1, begun_t1 = t1;
-      solve_friction<V>(two, r0, mu * l0, t0, g->belts ? g->surface[0] + lane : nullptr);
-      solve_friction<V>(two, r1, mu * l1, t1, g->belts ? g->surface[1] + lane : nullptr);
+      solve_friction<V>(two, r0, mu * l0, t0, g->surface[0] + lane);
+      solve_friction<V>(two, r1, mu * l1, t1, g->surface[1] + lane);
       const V sight = load<V>(g->sight + lane), never = V{} - 1e9;
-      const V open0 = pick<V>(r0.gap > sight, never, smaller<V>(-r0.gap * per_h, none));
-      const V open1 = pick<V>(r1.gap > sight, never, smaller<V>(-r1.gap * per_h, none));
+      const V open0 =
+          pick<V>(r0.gap > sight, never, smaller<V>(-r0.gap * per_h, none) - load<V>(g->turns[0] + lane));
+      const V open1 =
+          pick<V>(r1.gap > sight, never, smaller<V>(-r1.gap * per_h, none) - load<V>(g->turns[1] + lane));
       V target0 = open0, target1 = open1;
       if (g->struck[0] | g->struck[1]) {
         const TargetSpeeds& least = pace.least[g - batches];
@@ -416,7 +437,7 @@ OBSCURA_INLINE void follow_all(ContactBatch* batches, int count, const Pose* pos
       const auto set = [&](double* to, const V& next) { store<V>(to, pick<V>(moves, next, load<V>(to))); };
       for (int k = 0; k < 2; ++k) {
         WideRow<V> r;
-        make<V>(*g, lane, k, a, b, r);
+        make<V, true>(*g, lane, k, a, b, r);
         const V l0 = load<V>(g->p[k] + lane), t0 = load<V>(g->q[k] + lane);
         const V dl = by * load<V>(directions->p[k] + lane), dt = by * load<V>(directions->q[k] + lane);
         set(directions->p[k] + lane, dl + (l0 - load<V>(before->p[k] + lane)));
@@ -463,9 +484,10 @@ OBSCURA_INLINE void project_all(const ContactBatch* batches, Projection* p, int 
 OBSCURA_WIDE void expand_wide(const ContactBatch& s, const Pose* at, Rows& out) {
   expand_one<V4>(s, at, out);
 }
-OBSCURA_WIDE bool warm_start_wide(ContactBatch* s, int n, const Pose* at, const Motion* old, Motion* v,
-                                  const StepConstants& pace, LaneList& closing, LaneList& impacts) {
-  return warm_start_all<V4>(s, n, at, old, v, pace, closing, impacts);
+OBSCURA_WIDE bool warm_start_wide(ContactBatch* s, int n, const Pose* at, const Pose* middle,
+                                  const Motion* old, Motion* v, const StepConstants& pace, LaneList& closing,
+                                  LaneList& impacts) {
+  return warm_start_all<V4>(s, n, at, middle, old, v, pace, closing, impacts);
 }
 OBSCURA_WIDE double closing_rate_wide(const ContactBatch* s, int n, const Pose* at, const Motion* v,
                                       double h) {
@@ -504,7 +526,6 @@ void copy_lane(const ContactBatch& from, int i, ContactBatch& to, int k) {
   to.calm[k] = from.calm[i], to.far[k] = from.far[i], to.impact_speed[k] = from.impact_speed[i],
   to.radius[k] = from.radius[i];
   to.sight[k] = from.sight[i], to.per_width[k] = from.per_width[i], to.belt[k] = from.belt[i];
-  for (int touch = 0; touch < 2; ++touch) to.surface[touch][k] = from.surface[touch][i];
   to.belts = static_cast<unsigned char>((to.belts & ~(1 << k)) | (from.belts >> i & 1) << k);
   for (int side = 0; side < 2; ++side) {
     to.cx[side][k] = from.cx[side][i], to.cy[side][k] = from.cy[side][i];
@@ -521,6 +542,16 @@ void copy_lane(const ContactBatch& from, int i, ContactBatch& to, int k) {
 void expand(const ContactBatch& s, const Pose* at, Rows& out) {
   four_lanes ? expand_wide(s, at, out) : expand_one<V2>(s, at, out);
 }
+
+namespace {
+
+void set_arms(TouchRow& r, const Pose& a, const Pose& b) {
+  const double ax = r.x - a.x, ay = r.y - a.y, bx = r.x - b.x, by = r.y - b.y;
+  r.na = ax * r.ny - ay * r.nx, r.nb = bx * r.ny - by * r.nx;
+  r.ta = ax * r.nx + ay * r.ny, r.tb = bx * r.nx + by * r.ny;
+}
+
+}  // namespace
 
 TouchRow row(const ContactBatch& g, int lane, int k, const Pose& a, const Pose& b) {
   const bool swapped = g.of_b[k] >> lane & 1;
@@ -544,17 +575,28 @@ TouchRow row(const ContactBatch& g, int lane, int k, const Pose& a, const Pose& 
     r.x = x - nx * back, r.y = y - ny * back;
     r.nx = swapped ? -nx : nx, r.ny = swapped ? -ny : ny;
   }
-  const double ax = r.x - a.x, ay = r.y - a.y, bx = r.x - b.x, by = r.y - b.y;
-  r.na = ax * r.ny - ay * r.nx, r.nb = bx * r.ny - by * r.nx;
-  r.ta = ax * r.nx + ay * r.ny, r.tb = bx * r.nx + by * r.ny;
+  set_arms(r, a, b);
   return r;
 }
 
-bool warm_start(ContactBatch* s, int n, const Pose* at, const Motion* old, Motion* v,
+TouchRow middle_row(const ContactBatch& g, int lane, int k, const Pose& a, const Pose& b) {
+  TouchRow r = row(g, lane, k, a, b);
+  if ((g.corners[k] >> lane & 1) && g.radius[lane] <= 0) {
+    const double along = g.d[k][lane] + 0.5 * r.gap;
+    const double ox = r.x - r.nx * along, oy = r.y - r.ny * along;
+    r.nx = g.ux[k][lane], r.ny = g.uy[k][lane];
+    r.x = ox + r.nx * along, r.y = oy + r.ny * along;
+    set_arms(r, a, b);
+  }
+  r.gap = g.gap[k][lane];
+  return r;
+}
+
+bool warm_start(ContactBatch* s, int n, const Pose* at, const Pose* middle, const Motion* old, Motion* v,
                 const StepConstants& pace, LaneList& closing, LaneList& impacts) {
   closing.clear(), impacts.clear();
-  return four_lanes ? warm_start_wide(s, n, at, old, v, pace, closing, impacts)
-                    : warm_start_all<V2>(s, n, at, old, v, pace, closing, impacts);
+  return four_lanes ? warm_start_wide(s, n, at, middle, old, v, pace, closing, impacts)
+                    : warm_start_all<V2>(s, n, at, middle, old, v, pace, closing, impacts);
 }
 double closing_rate(const ContactBatch* s, int n, const Pose* at, const Motion* v, double h) {
   return four_lanes ? closing_rate_wide(s, n, at, v, h) : closing_rate_all<V2>(s, n, at, v, h);

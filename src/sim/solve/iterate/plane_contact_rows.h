@@ -42,7 +42,10 @@ struct alignas(64) ContactBatch {
   double per_width[kLanes];     // 1/m: one over the width of the narrower body
   double radius[kLanes];        // sum of both radii, m
   double belt[kLanes];          // m/s: what the belts of both add to v_t
-  double surface[2][kLanes];    // m/s: belts, and what arms that turn within the substep add at its end
+  // where the substep begins: gaps, m, and of sharp corners on each other the normal
+  double gap[2][kLanes], ux[2][kLanes], uy[2][kLanes];
+  // m/s: what rows that turn, and belts, add to speeds at its end, along the normal and the tangent
+  double turns[2][kLanes], surface[2][kLanes];
   double cx[2][kLanes], cy[2][kLanes];
   double fx[2][kLanes], fy[2][kLanes];
   double d[2][kLanes];  // of two corners: b's radius
@@ -93,6 +96,8 @@ struct TouchRow {
 };
 /// Touch k of one lane, whose bodies stand at these poses.
 TouchRow row(const ContactBatch& batches, int lane, int k, const Pose& a, const Pose& b);
+/// The same at poses of the middle of the substep, where sharp corners on each other keep their normal.
+TouchRow middle_row(const ContactBatch& batches, int lane, int k, const Pose& a, const Pose& b);
 
 /// Normal speed of a touch, m/s: a against b.
 inline double normal_speed(const TouchRow& r, const Motion& a, const Motion& b) {
@@ -107,17 +112,18 @@ inline double normal_speed(const Rows& r, int k, int lane, const Motion& a, cons
          (r.na[k][lane] * a.w - r.nb[k][lane] * b.w);
 }
 
-/// Warm start: turns the stored forces into impulses and applies them to v. `old`: velocities at the start of
-/// the substep. Appends the lanes that close slowly within it to `closing`, and those that close with an
-/// impact to `impacts`. True if some overlap is deeper than project() allows.
-bool warm_start(ContactBatch* batches, int count, const Pose* poses, const Motion* old, Motion* v,
-                const StepConstants& pace, LaneList& closing, LaneList& impacts);
+/// Warm start: turns the stored forces into impulses and applies them to v. `poses`, `old`: where the substep
+/// begins; `middle`: poses in its middle, as bodies go there. Appends the lanes that close slowly within it
+/// to `closing`, and those that close with an impact to `impacts`. True if some overlap is deeper than
+/// project() allows.
+bool warm_start(ContactBatch* batches, int count, const Pose* poses, const Pose* middle, const Motion* old,
+                Motion* v, const StepConstants& pace, LaneList& closing, LaneList& impacts);
 
 /// The largest closing speed of pairs that touch or may within h s, in widths of the narrower body, 1/s. Of
 /// polygons a part of the relative speed counts too, as other corners of theirs may come near.
 double closing_rate(const ContactBatch* batches, int count, const Pose* poses, const Motion* v, double h);
 
-/// One iteration: every pair once, in order.
+/// One iteration: every pair once, in order. `poses`, here and below: those of the middle.
 void iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace);
 /// Bodies whose pairs need more iterations: those of a pair whose last correction exceeded `settled` widths a
 /// second. Bodies on joints are excluded by kNever.
@@ -150,8 +156,8 @@ void follow(ContactBatch* batches, int count, const Pose* poses, Motion* v, Lane
 void iterate_last(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
                   Contact<2>* contacts);
 
-/// One iteration over positions, which takes away `share` of the overlap beyond the allowed one. Friction
-/// holds here too; without it the correction would let piles slide apart.
+/// One iteration over positions at `poses`, which takes away `share` of the overlap beyond the allowed one.
+/// Friction holds here too; without it the correction would let piles slide apart.
 void project(const ContactBatch* batches, Projection* projections, int count, const Pose* poses, Motion* d,
              double share, AllowedOverlap allowed);
 

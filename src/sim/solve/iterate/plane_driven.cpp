@@ -35,40 +35,6 @@ void PlaneIterative::move_driven(StepPart<D> part) {
   }
 }
 
-// Where one of a pair is moved, rows have its velocity at the end of the substep, but arms of its beginning:
-// what sticks to it would follow its surface a substep late. What that adds to the slip at the end, along t:
-//   t . (w_a x (r_a' - r_a) - w_b x (r_b' - r_b))      r'  arms at the end, as the bodies move now
-void PlaneIterative::find_drifts(double h) {
-  if (!drives_.any()) return;
-  const auto ahead = [&](int body) {
-    plane::Pose at = poses_[std::size_t(body)];
-    const int drive = drives_.number(body);
-    const Motion& v = old_[std::size_t(body)];
-    at.x += drive >= 0 ? dx_[std::size_t(body)].x : h * v.x;
-    at.y += drive >= 0 ? dx_[std::size_t(body)].y : h * v.y;
-    const SinCos turned =
-        sin_cos(turns_[std::size_t(body)] + (drive >= 0 ? dx_[std::size_t(body)].w : h * v.w));
-    at.c = turned.cos, at.s = turned.sin;
-    return at;
-  };
-  for (const Pair& pair : pairs_.all()) {
-    if (pair.slot < 0 || pair.b < 0 || (drives_.number(pair.a) < 0 && drives_.number(pair.b) < 0)) continue;
-    ContactBatch& g = batches_[pair.slot / kLanes];
-    const int lane = pair.slot % kLanes;
-    const plane::Pose &a = poses_[pair.a], &b = poses_[pair.b], a_then = ahead(pair.a),
-                      b_then = ahead(pair.b);
-    const auto w = [&](int body) { return drives_.number(body) >= 0 ? moving_[body].w : old_[body].w; };
-    for (int k = 0; k < pair.touches; ++k) {
-      const plane::TouchRow now = plane::row(g, lane, k, a, b), then = plane::row(g, lane, k, a_then, b_then);
-      // t . (w x r) is w (n . r), t = (-n_y, n_x)
-      const auto along = [&](double x, double y) { return now.nx * x + now.ny * y; };
-      const double gain_a = along((then.x - a_then.x) - (now.x - a.x), (then.y - a_then.y) - (now.y - a.y));
-      const double gain_b = along((then.x - b_then.x) - (now.x - b.x), (then.y - b_then.y) - (now.y - b.y));
-      g.surface[k][lane] = g.belt[lane] + (w(pair.a) * gain_a - w(pair.b) * gain_b);
-    }
-  }
-}
-
 void PlaneIterative::place_driven(State<D>& state) {
   const int still = int(turns_.size() - state.turn.size());
   for (int i = 0; i < drives_.size(); ++i) {
@@ -100,10 +66,10 @@ double PlaneIterative::contact_work(StepPart<D> part) const {
     for (int k = 0; k < pair.touches; ++k) {
       const double fx = g.p[k][lane], fy = g.q[k][lane];
       if (fx == 0 && fy == 0) continue;
-      const plane::TouchRow r = plane::row(g, lane, k, poses_[pair.a], poses_[pair.b < 0 ? room : pair.b]);
+      const plane::TouchRow r =
+          plane::middle_row(g, lane, k, middle_[pair.a], middle_[pair.b < 0 ? room : pair.b]);
       const double n = fx * r.nx + fy * r.ny, t = fy * r.nx - fx * r.ny;
-      const double surface = 0.5 * (g.belt[lane] + g.surface[k][lane]);
-      sum -= n * plane::normal_speed(r, a, b) + t * (plane::tangent_speed(r, a, b) + surface);
+      sum -= n * plane::normal_speed(r, a, b) + t * (plane::tangent_speed(r, a, b) + g.belt[lane]);
     }
   }
   return part.h * sum;

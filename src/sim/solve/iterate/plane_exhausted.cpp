@@ -69,7 +69,7 @@ void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) 
     const ContactBatch& g = batches_[slot / kLanes];
     const int lane = slot % kLanes;
     for (int k = 0; k < g.touches[lane]; ++k) {
-      const plane::TouchRow r = row(g, lane, k, poses_[g.a[lane]], poses_[g.b[lane]]);
+      const plane::TouchRow r = middle_row(g, lane, k, middle_[g.a[lane]], middle_[g.b[lane]]);
       const bool struck = g.struck[k] >> lane & 1;
       if (r.gap > g.sight[lane] && !struck) continue;
       touches.push_back({slot, k, r});
@@ -97,11 +97,11 @@ void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) 
     if (i % 2 == 0) {
       island.blocks[std::size_t(i / 2)] = {.mu = g.mu[lane]};
       const bool struck = g.struck[k] >> lane & 1;
-      const double least =
-          struck ? constants_.least[slot / kLanes].n[k][lane] : std::min(-r.gap / constants_.h, 0.0);
+      const double least = struck ? constants_.least[slot / kLanes].n[k][lane]
+                                  : std::min(-r.gap / constants_.h, 0.0) - g.turns[k][lane];
       island.speeds[i] = normal_speed(r, va, vb) - least, island.p[i] = g.p[k][lane];
     } else {
-      island.speeds[i] = tangent_speed(r, va, vb) + (g.belts ? g.surface[k][lane] : 0);
+      island.speeds[i] = tangent_speed(r, va, vb) + g.surface[k][lane];
       island.p[i] = g.q[k][lane];
     }
     for (int j = 0; j <= i; ++j) {

@@ -22,6 +22,11 @@ namespace {
 
 constexpr std::size_t kPairsAhead = 4;  // pairs that are asked for, as they are far apart in memory
 
+// of a body's fastest point, at most, m/s
+double swiftness(const Motion& v, double radius) {
+  return std::fabs(v.x) + std::fabs(v.y) + radius * std::fabs(v.w);
+}
+
 }  // namespace
 
 Impacts::Impacts(const CoreShapes& cores, const Pairs& pairs, bool together)
@@ -194,8 +199,8 @@ void Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
   }
 }
 
-// Sets the targets of the iterations for the pairs of bodies that had impacts. Their rows are those at the
-// start of the substep. A pair that touches must not approach; a pair that is apart must not close in the
+// Sets the targets of the iterations for the pairs of bodies that had impacts. Their rows are those of the
+// middle of the substep. A pair that touches must not approach; a pair that is apart must not close in the
 // rest of the substep. If a pair struck by other features than its rows have, the rows may separate fast
 // while these features hardly do: to keep up such a speed would take energy from nowhere, so the target is at
 // most zero.
@@ -217,15 +222,33 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
       v[k] = normal_speed(r, k, lane, va, vb);
       any = any || (v[k] < 0 && r.gap[k][lane] + step.pace.h * v[k] < 0);
     }
-    if (!any) return;
+    const double fast = swiftness(va, bounding_radius_[pair.a]) + swiftness(vb, bounding_radius_[b]);
+    const bool struck = strikes(pair.a, b, va, vb, step);
+    if (!any && !struck) return;
+    const auto in_middle = [&](int k) {
+      return normal_speed(middle_row(g, lane, k, step.middle[pair.a], step.middle[b]), va, vb);
+    };
+    if (struck) {
+      for (int k = 0; k < 2; ++k) g.surface[k][lane] = g.belt[lane];
+    }
+    if (!any) {
+      // as it stands where the substep begins: a way that was not gone says nothing
+      for (int k = 0; k < pair.touches; ++k) g.turns[k][lane] = v[k] - in_middle(k);
+      return;
+    }
     const PlacedPair at = placed_at(pair, last, g, step);
     const double left = step.pace.h - at.when;
     for (int k = 0; k < pair.touches; ++k) {
       const double gap = at.rows[k].gap, vn = normal_speed(at.rows[k], at.a, at.b);
       double& least = least_[group].n[k][lane];
       g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
-      least = v[k] - vn;
-      if (met == 2) least = std::min(least, 0.0);
+      const double middle = in_middle(k);
+      // of what goes on bearing and has hardly changed, how its rows turn until the end
+      const bool goes_on = !struck && std::fabs(vn) <= kLasting * fast;
+      least = !goes_on ? std::min(middle - vn, std::max(v[k] - vn, 0.0)) : v[k] - middle;
+      if (goes_on && !(g.p[k][lane] > 0)) least = std::min(least, 0.0);
+      // nor may rows that are others push apart what only they part
+      if (met == 2 || vn < 0) least = std::min(least, 0.0);
       least = target_after_impacts(least, {gap, vn}, kTogether * g.far[lane], g.impact_speed[lane], left,
                                    step.pace.h);
     }
@@ -235,6 +258,15 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
     for (const int i : around(body)) leave(i);
   }
   for (const Impact& impact : impacts_) waiting_[impact.pair] = 0;
+}
+
+// whether impacts have changed by much how fast two pass each other
+bool Impacts::strikes(int a, int b, const Motion& va, const Motion& vb, const Step& step) const {
+  const Motion &oa = step.old[a], &ob = step.old[b];
+  const double ra = bounding_radius_[a], rb = bounding_radius_[b];
+  const double changed = std::fabs((va.x - vb.x) - (oa.x - ob.x)) + std::fabs((va.y - vb.y) - (oa.y - ob.y)) +
+                         ra * std::fabs(va.w - oa.w) + rb * std::fabs(vb.w - ob.w);
+  return changed > kStrikes * (swiftness(oa, ra) + swiftness(ob, rb));
 }
 
 // notes it, and looks anew at all that it moves
@@ -253,9 +285,9 @@ void Impacts::had_impact(const Impact& impact, const Step& step, JointSolver<2>&
 }
 
 int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
-                 const std::vector<Pose>& poses, const std::vector<Motion>& old,
-                 const std::vector<Motion>& dv, std::vector<Motion>& v, const StepConstants& pace,
-                 JointSolver<2>& joints) {
+                 const std::vector<Pose>& poses, const std::vector<Pose>& middle,
+                 const std::vector<Motion>& old, const std::vector<Motion>& dv, std::vector<Motion>& v,
+                 const StepConstants& pace, JointSolver<2>& joints) {
   for (const int body : bodies_) when_[body] = first_[body] = -1, rounds_[body] = 0;
   for (const int body : crowd_) crowded_[body] = 0;
   crowd_.clear(), instants_ = 0;
@@ -268,7 +300,7 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
   std::copy(old.begin(), old.end(), now_.begin());
   known_.assign(batches.size(), -1);
 
-  const Step step{pairs, poses, dv, pace};
+  const Step step{pairs, poses, middle, old, dv, pace};
   for (const int lane : found) look_at(batches[lane / kLanes].pair[lane % kLanes]);
   // which lane a pair has hangs on the steps before; the order of pairs does not
   std::sort(queue_.begin(), queue_.end());

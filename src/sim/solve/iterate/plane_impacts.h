@@ -32,8 +32,9 @@ class Impacts {
   /// as struck, and sets least() for them. Returns a body whose impacts do not end
   /// (sim/solve/iterate/endless_impacts.h), or -1.
   int run(const LaneList& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
-          const std::vector<Pose>& poses, const std::vector<Motion>& old, const std::vector<Motion>& dv,
-          std::vector<Motion>& v, const StepConstants& pace, JointSolver<2>& joints);
+          const std::vector<Pose>& poses, const std::vector<Pose>& middle, const std::vector<Motion>& old,
+          const std::vector<Motion>& dv, std::vector<Motion>& v, const StepConstants& pace,
+          JointSolver<2>& joints);
 
   /// The work of kinematic bodies and belts by the impacts of the last run, J.
   double drive_work() const { return drive_work_; }
@@ -97,8 +98,8 @@ class Impacts {
   // what does not change while the impacts of a step are resolved
   struct Step {
     const std::vector<Pair>& pairs;
-    const std::vector<Pose>& poses;
-    const std::vector<Motion>& dv;
+    const std::vector<Pose>&poses, &middle;
+    const std::vector<Motion>&old, &dv;
     const StepConstants& pace;
   };
   void reach(int body, double when, const Step& step);
@@ -153,6 +154,7 @@ class Impacts {
     v.x += share * gain.x, v.y += share * gain.y, v.w += share * gain.w;
     return v;
   }
+  bool strikes(int a, int b, const Motion& va, const Motion& vb, const Step& step) const;
   void leave_to_iterations(std::vector<ContactBatch>& batches, const Step& step);
   const Rows& rows(int group, const std::vector<ContactBatch>& batches, const std::vector<Pose>& poses);
 

@@ -62,8 +62,8 @@ void PlaneIterative::apply_warm_start() {
   for (Seen& seen : seen_) seen.deep = false, seen.slow.clear(), seen.fast.clear();
   by_colour([&](int begin, int end, int number) {
     Seen& seen = seen_[std::size_t(number)];
-    seen.deep = plane::warm_start(batches_.data() + begin, end - begin, poses_.data(), old_.data(),
-                                  moving_.data(), constants_, seen.slow, seen.fast);
+    seen.deep = plane::warm_start(batches_.data() + begin, end - begin, poses_.data(), middle_.data(),
+                                  old_.data(), moving_.data(), constants_, seen.slow, seen.fast);
     for (plane::LaneList* list : {&seen.slow, &seen.fast})
       for (int& lane : *list) lane += kLanes * begin;
   });
@@ -77,7 +77,7 @@ void PlaneIterative::apply_warm_start() {
 
 void PlaneIterative::iterate_all() {
   by_colour([&](int begin, int end, int) {
-    plane::iterate(batches_.data() + begin, end - begin, poses_.data(), moving_.data(),
+    plane::iterate(batches_.data() + begin, end - begin, middle_.data(), moving_.data(),
                    constants_from(begin));
   });
 }
@@ -94,14 +94,14 @@ int PlaneIterative::iterate_active() {
     by_colour(
         [&](int begin, int end, int number) {
           iterated_[std::size_t(number)] =
-              plane::iterate(batches_.data() + begin, nullptr, end - begin, poses_.data(), moving_.data(),
+              plane::iterate(batches_.data() + begin, nullptr, end - begin, middle_.data(), moving_.data(),
                              constants_from(begin), active_bodies_);
         },
         kActiveBatchPiece);
     pairs = std::accumulate(iterated_.begin(), iterated_.end(), 0);
   } else {
     by_colour(groups, [&](int begin, int end) {
-      pairs += plane::iterate(batches_.data(), groups.data() + begin, end - begin, poses_.data(),
+      pairs += plane::iterate(batches_.data(), groups.data() + begin, end - begin, middle_.data(),
                               moving_.data(), constants_, active_bodies_);
     });
   }
@@ -111,7 +111,7 @@ int PlaneIterative::iterate_active() {
 
 void PlaneIterative::iterate_last(Contact<D>* contacts) {
   by_colour([&](int begin, int end, int) {
-    plane::iterate_last(batches_.data() + begin, end - begin, poses_.data(), moving_.data(),
+    plane::iterate_last(batches_.data() + begin, end - begin, middle_.data(), moving_.data(),
                         constants_from(begin), contacts);
   });
 }

@@ -58,7 +58,7 @@ void PlaneIterative::settle_all() {
     if (!follows || left <= pairs) continue;
     if (std::none_of(active_bodies_.bodies.begin(), active_bodies_.bodies.end(), now)) return;
     const double changed = squared_change();
-    plane::follow(batches_.data(), count, poses_.data(), moving_.data(), before_.data(), directions_.data(),
+    plane::follow(batches_.data(), count, middle_.data(), moving_.data(), before_.data(), directions_.data(),
                   change > 0 && changed <= change ? changed / change : 0, active_bodies_);
     change = changed;
     activate();

@@ -189,7 +189,7 @@ class SpaceIterative final : public Iterative<3> {
   bool features_change(const ContactConstraint& touch) const;
   void renew_features(int first, double low, double high, double h);
   void begin_flights(const State<D>& state, double h);
-  void find_closing(double h);
+  void find_closing(const State<D>& state, double h);
   void find_turned_pairs(double h);
   void restore_features();
   bool has_nearest_features(const ImpactQueue::Due& due, double h);
@@ -228,14 +228,16 @@ class SpaceIterative final : public Iterative<3> {
     const PointBody<D>&a = moving_[touch.a], &b = moving_[touch.b];
     const Vec<D> slips =
         a.v + cross_velocity<D>(a.w, touch.arm_a) - b.v - cross_velocity<D>(b.w, touch.arm_b);
-    return carries_.empty() ? slips : Vec<D>(slips + touch.belt + touch.drift);
+    return slips + touch.belt + touch.drift;
   }
   // of bodies that are moved, and belts
   bool carries(int body) const {
     return !carries_.empty() && body < int(model_.bodies.size()) && carries_[std::size_t(body)];
   }
   Vec<D> belt(const ContactConstraint& touch) const;
-  Vec<D> drift(int touch, const State<D>& state, double h) const;
+  bool lasts(const ContactConstraint& touch, const Vec<D>& force) const;
+  bool strikes(const ContactConstraint& touch, const Vec<D>& passes) const;
+  void center(int touch, const State<D>& state, double h, bool bears);
   void find_bearing(const State<D>& state, double h);
   bool gives(int body) const {
     return !borne_.empty() && !inactive_[std::size_t(body)] && dynamics_.has(body);

@@ -19,32 +19,6 @@ Vec<3> SpaceIterative::belt(const ContactConstraint& touch) const {
   return u;
 }
 
-// Across the normal. Where one of a pair is moved, rows have its velocities at the end of the substep, but
-// arms of its beginning: what sticks to it would follow its surface a substep late, and on a turntable go
-// outwards by w^2 h / 2 of its radius a second.
-//   w_a x (r_a' - r_a) - w_b x (r_b' - r_b)            r'  arms at the end, as the bodies move now
-Vec<3> SpaceIterative::drift(int number, const State<D>& state, double h) const {
-  const ContactConstraint& touch = touches_[std::size_t(number)];
-  const int n = int(model_.bodies.size());
-  const auto ahead = [&](int body) {
-    if (body == n) return BodyMotion<D>();
-    if (drives_.number(body) >= 0) return body_motion(state, body);
-    BodyMotion<D> at = stances_[std::size_t(body)];
-    if (inactive_[std::size_t(body)]) return at;
-    at.x += h * at.v;
-    if (turning(state, body) >= 0)
-      at.room_from_body = rotation<D>(turned<D>(begun_turn(body), AngularVec<D>(h * at.w)));
-    return at;
-  };
-  const BodyMotion<D> a = ahead(touch.a), b = ahead(touch.b);
-  const EvaluatedContact<D> then = evaluate(features_[std::size_t(number)], a, b);
-  const Vec<D> apart = 0.5 * std::max(0.0, then.value) * then.normal;
-  const Vec<D> arm_a = then.point + apart - a.x, arm_b = then.point - apart - b.x;
-  const Vec<D> change =
-      cross_velocity<D>(a.w, arm_a - touch.arm_a) - cross_velocity<D>(b.w, arm_b - touch.arm_b);
-  return change - touch.n.dot(change) * touch.n;
-}
-
 // where they are and how they move at the end of the step, into the state and among those that others touch
 void SpaceIterative::move_driven(State<D>& state, double t, double h) {
   for (int i = 0; i < drives_.size(); ++i) {
@@ -76,7 +50,7 @@ double SpaceIterative::given_at(const ContactConstraint& touch, const Vec<D>& im
     return at;
   };
   return given(impulse, mean(touch.a), touch.a, touch.arm_a, mean(touch.b), touch.b, touch.arm_b) -
-         impulse.dot(touch.belt + 0.5 * touch.drift);
+         impulse.dot(touch.belt);
 }
 
 double SpaceIterative::contact_work(StepPart<D>) const {

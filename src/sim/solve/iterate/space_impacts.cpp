@@ -217,7 +217,7 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
   });
   if (!any) return;
   begin_flights(state, h);
-  find_closing(h);
+  find_closing(state, h);
   renewed_.clear();
   rounds_.assign(n + 1, 0), crowded_.assign(n + 1, 0);
   find_turned_pairs(h);
@@ -279,9 +279,12 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
       return touch.n.dot(body.velocity(arm));
     };
     touch.after = true;
-    touch.least = target_after_impacts(along(at.a, touch.arm_a) - along(at.b, touch.arm_b) - at.speed,
-                                       {at.now.value, at.speed}, kTogether * bounding_radius_[touch.a],
-                                       -restitution_threshold_, left, h);
+    touch.rests =
+        std::fabs(at.speed) <= kLasting * (swiftness(touch.a) + (touch.b < n ? swiftness(touch.b) : 0));
+    touch.apart = along(at.a, touch.arm_a) - along(at.b, touch.arm_b) - at.speed;
+    touch.least =
+        target_after_impacts(touch.apart, {at.now.value, at.speed}, kTogether * bounding_radius_[touch.a],
+                             -restitution_threshold_, left, h);
   }
   for (int i = 0; i < n; ++i) {
     if (when_[i] < 0) continue;
@@ -335,15 +338,20 @@ void SpaceIterative::begin_flights(const State<D>& state, double h) {
 }
 
 // those gaps that close fast before anything has been struck, each due then
-void SpaceIterative::find_closing(double h) {
+void SpaceIterative::find_closing(const State<D>& state, double h) {
   const int count = int(touches_.size());
   reach_.resize(touches_.size()), may_close_.resize(touches_.size()), meets_at_.resize(touches_.size());
   nearest_.resize(touches_.size());
   each(workers(), count, kTouchPiece, [&](int first, int end) {
+    auto known =
+        std::lower_bound(state.contacts.begin(), state.contacts.end(), touches_[first].key,
+                         [](const auto& contact, const ContactKey& key) { return contact.key < key; });
     for (int i = first; i < end; ++i) {
       ContactConstraint& touch = touches_[i];
+      while (known != state.contacts.end() && known->key < touch.key) ++known;
       reach_[i] = {touch.gap, 0, approach_limit(i, h)}, may_close_[i] = 0;
       if (most_passing(touch) < restitution_threshold_) continue;
+      if (known != state.contacts.end() && known->key == touch.key && lasts(touch, known->force)) continue;
       touch.passes = stays_apart(i, kInTime * bounding_radius_[touch.a], h), may_close_[i] = !touch.passes;
     }
   });

@@ -54,6 +54,17 @@ inline constexpr double kFewestSubsteps = 240, kMostSubsteps = 4800;
 inline constexpr double kPassing = 0.25;
 /// Gaps up to this, in widths of the narrower body, count as nearly touching.
 inline constexpr double kNearly = 0.1;
+/// Gaps up to this, in widths of the narrower body: one lies on the other, and its rows turn within the
+/// substep.
+inline constexpr double kNearby = 0.01;
+/// Of how fast two pass each other and turn: what bore in the last substep and closes no faster goes on
+/// bearing, and is not struck.
+inline constexpr double kLasting = 0.05;
+/// rad: what turns farther in a substep does so without its rows.
+inline constexpr double kMostTurn = 1;
+/// What changes how fast two pass each other by more than this, of how fast both are, is a blow: how their
+/// rows turned before it says nothing of after it.
+inline constexpr double kStrikes = 0.5;
 /// The width of a point, of the size of the room.
 inline constexpr double kPointWidth = 1e-3;
 
