@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <cmath>
 #include <thread>
@@ -39,6 +40,8 @@ scene::Scene with(const FilmOptions& options, const Scene& of) {
   for (const int side : {options.width, options.height})
     if (side < 0 || side > kMostPixels)
       throw UsageError(fmt::format("a picture of {} pixels is not between 1 and {}", side, kMostPixels));
+  if (options.jobs < 0)
+    throw UsageError(fmt::format("jobs {}: expected 0 (all cores) or more", options.jobs));
   if (options.width > 0) film.width = options.width;
   if (options.height > 0) film.height = options.height;
   if (!options.fps.empty()) {
@@ -154,12 +157,16 @@ Sweep sweep(const Scene& scene, const std::vector<std::string>& vary, const std:
 
     using Row = std::vector<std::string>;
     std::int64_t next = 0;
+    // workers are threads of their own: what the caller's function says goes on to them
+    std::atomic<bool> ended = false;
     app::Conduct<std::int64_t, Row> parts;
     parts.produce = [&]() -> std::optional<std::int64_t> {
-      if (next == all.size || app::interrupted()) return {};
+      if (next == all.size || ended || app::interrupted()) return {};
       return next++;
     };
+    parts.wait = [&] { ended = ended || app::interrupted(); };
     parts.hire = [&] {
+      app::interrupt_by([&] { return ended.load(); });
       return [&](std::int64_t run) {
         Row row = all[run];
         app::Answers answers;
@@ -182,7 +189,7 @@ Sweep sweep(const Scene& scene, const std::vector<std::string>& vary, const std:
     };
     const int cores = jobs > 0 ? jobs : std::max(1, int(std::thread::hardware_concurrency()));
     app::conduct(parts, int(std::min<std::int64_t>(cores, all.size)));
-    if (std::int64_t(made.rows.size()) < all.size) throw app::Interrupted();
+    if (ended || std::int64_t(made.rows.size()) < all.size) throw app::Interrupted();
     return made;
   });
 }

@@ -9,7 +9,7 @@
 ///     obscura::World world(scene);
 ///     obscura::Renderer renderer(scene);
 ///     obscura::Movie movie("room.mp4", renderer);
-///     for (; world.time() < scene.duration(); world.step_to(world.time() + 1 / renderer.fps()))
+///     for (int n = 0; world.time() < scene.duration(); world.step_to(++n / renderer.fps()))
 ///       movie.add(renderer.draw(world));
 ///     movie.close();
 ///
@@ -139,7 +139,7 @@ class Builder {
 
   /// Sets a key: "duration", "room.size", "film.fps". Throws SceneError for one that there is not.
   Builder& set(std::string_view key, Value value);
-  /// Adds one more of a kind, as [[ball]] does: "ball", "joint", "film.marks.length".
+  /// Adds one more of a kind, as [[ball]] does: "ball", "joint", "film.caption".
   Builder& add(std::string_view kind, Table keys);
 
   const Table& keys() const { return keys_; }
@@ -325,7 +325,8 @@ class World {
   Energies energies() const;
 
   std::vector<Contact> contacts() const;
-  /// Pairs that began to touch and pairs that parted, since the last call, or the start.
+  /// Pairs that touch and did not at the last call, or the start; and pairs that did and do not. What touched
+  /// and parted between two calls is in neither: ask at each step for every bounce.
   ContactChanges contact_changes();
   /// All that has fired since the start, in the order of time.
   std::vector<Event> events() const;

@@ -148,6 +148,10 @@ std::vector<std::uint8_t> Renderer::take(std::vector<std::uint8_t> memory) {
 
 std::vector<std::uint8_t> png(const Frame& frame, bool transparent) {
   return guarded([&] {
+    if (frame.width < 1 || frame.height < 1 ||
+        frame.pixels.size() != std::size_t(4) * std::size_t(frame.width) * std::size_t(frame.height))
+      throw UsageError(
+          fmt::format("a frame of {}x{} with {} bytes", frame.width, frame.height, frame.pixels.size()));
     media::Image image{frame.width, frame.height, {frame.pixels.begin(), frame.pixels.end()}};
     return media::encode_png(image,
                              {.alpha = transparent, .tags = {{"Software", "obscura " OBSCURA_VERSION}}});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string>
 
 #include "app/console/interrupt.h"
@@ -117,7 +118,8 @@ double World::step_length() const { return 1 / sim::value(inside_->run->rate());
 
 void World::step(std::int64_t count) {
   if (count < 0) throw UsageError(fmt::format("step({}): a world goes on; restore() goes back", count));
-  guarded([&] { inside_->go(steps() + count); });
+  const std::int64_t most = std::numeric_limits<std::int64_t>::max() - steps();
+  guarded([&] { inside_->go(steps() + std::min(count, most)); });
 }
 
 void World::step_to(double t) {

@@ -1,7 +1,9 @@
 #include "python/convert.h"
 
+#include <atomic>
 #include <chrono>
 #include <string>
+#include <thread>
 
 namespace obscura::python {
 
@@ -11,32 +13,71 @@ namespace {
 
 // how often a run asks whether a signal has come
 constexpr std::chrono::milliseconds kAsk{50};
+constexpr int kDeepest = 100;  // lists and tables within each other
+// for work of other threads at the end of Python
+constexpr std::chrono::milliseconds kLongestEnd{10000};
+
+std::atomic<bool> ending = false;
+std::atomic<int> working = 0;
+std::thread::id ends;  // the thread that ends Python
+
+// a thread that Python's end has overtaken: it must not ask for the lock, as Python would unwind it
+void stay_if_ending() {
+  while (ending && std::this_thread::get_id() != ends) std::this_thread::sleep_for(std::chrono::hours(1));
+}
 
 }  // namespace
 
-Value value(py::handle from) {
+Value value(py::handle from, int depth) {
+  if (depth > kDeepest) throw py::value_error("nested too deep");
   if (py::isinstance<py::bool_>(from)) return from.cast<bool>();
-  if (py::isinstance<py::int_>(from)) return from.cast<std::int64_t>();
-  if (py::isinstance<py::float_>(from)) return from.cast<double>();
-  if (py::isinstance<py::str>(from)) return from.cast<std::string>();
+  try {
+    if (py::isinstance<py::int_>(from)) return from.cast<std::int64_t>();
+    if (py::isinstance<py::float_>(from)) return from.cast<double>();
+    if (py::isinstance<py::str>(from)) return from.cast<std::string>();
+  } catch (const py::cast_error&) {
+    // an integer of more than 64 bits, or half of a pair of UTF-16
+    throw py::value_error(py::isinstance<py::str>(from) ? "no text of Unicode"
+                                                        : "a number that is too large");
+  }
   // numbers and arrays of NumPy
-  if (py::hasattr(from, "tolist")) return value(from.attr("tolist")());
+  if (py::hasattr(from, "tolist")) return value(from.attr("tolist")(), depth + 1);
   if (py::hasattr(from, "__fspath__")) return py::str(from.attr("__fspath__")()).cast<std::string>();
-  if (py::hasattr(from, "keys")) return table(from);
+  if (py::hasattr(from, "keys")) return table(from, depth + 1);
   if (py::isinstance<py::sequence>(from)) {
     Value::List list;
-    for (const py::handle each : from) list.push_back(value(each));
+    for (const py::handle each : from) list.push_back(value(each, depth + 1));
     return list;
   }
   throw py::type_error("a scene has numbers, words, lists and tables, not " +
                        py::str(py::type::handle_of(from)).cast<std::string>());
 }
 
-Table table(py::handle from) {
+Table table(py::handle from, int depth) {
   Table table;
-  for (const py::handle key : from.attr("keys")())
-    table.emplace_back(py::str(key).cast<std::string>(), value(from[key]));
+  for (const py::handle key : from.attr("keys")()) {
+    const std::string name = py::str(key).cast<std::string>();
+    const auto at = [&](const std::exception& error) {
+      const std::string what = error.what();
+      return name + (what.find(": ") == std::string::npos ? ": " : ".") + what;
+    };
+    try {
+      table.emplace_back(name, value(from[key], depth));
+    } catch (const py::type_error& error) {
+      throw py::type_error(at(error));
+    } catch (const py::value_error& error) {
+      throw py::value_error(at(error));
+    }
+  }
   return table;
+}
+
+void end_work() {
+  ends = std::this_thread::get_id(), ending = true;
+  const py::gil_scoped_release released;
+  const auto begun = std::chrono::steady_clock::now();
+  while (working > 0 && std::chrono::steady_clock::now() - begun < kLongestEnd)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
 py::object object(const Value& from) {
@@ -68,7 +109,10 @@ std::string shape(const py::array& of) {
 }
 
 Unlocked::Unlocked() {
+  stay_if_ending();
+  ++working;
   interrupt_by([asked = std::chrono::steady_clock::now(), ended = false]() mutable {
+    if (ending && std::this_thread::get_id() != ends) return true;
     const auto now = std::chrono::steady_clock::now();
     if (ended || now - asked < kAsk) return ended;
     asked = now;
@@ -77,7 +121,11 @@ Unlocked::Unlocked() {
   });
 }
 
-Unlocked::~Unlocked() { interrupt_by({}); }
+Unlocked::~Unlocked() {
+  interrupt_by({});
+  --working;
+  stay_if_ending();
+}
 
 // The classes of exceptions are Python's (obscura/errors.py), so that they have attributes, and pickle.
 void add_errors() {

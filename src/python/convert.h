@@ -10,9 +10,9 @@
 namespace obscura::python {
 
 /// A value of Python as one of the scene language: numbers, truths, text, paths, sequences, arrays and
-/// mappings. Throws TypeError for others.
-Value value(pybind11::handle from);
-Table table(pybind11::handle from);
+/// mappings. Throws TypeError for others, with the key, and for what is nested deeper than a scene can be.
+Value value(pybind11::handle from, int depth = 0);
+Table table(pybind11::handle from, int depth = 0);
 
 /// The same back: numbers, text, lists and dicts.
 pybind11::object object(const Value& from);
@@ -26,6 +26,12 @@ void add_errors();
 void add_scene(pybind11::module_& module);
 void add_world(pybind11::module_& module);
 void add_film(pybind11::module_& module);
+/// Ends the movies that were not closed, without a file.
+void give_up_movies();
+
+/// Before Python ends: ends all long work of other threads, which then stay where they are, as there is no
+/// Python to come back to. To be called with Python's lock.
+void end_work();
 
 /// Long work without Python's lock, which Ctrl-C ends. Ends with the exception of the signal's handler.
 class __attribute__((visibility("hidden"))) Unlocked {

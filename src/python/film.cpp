@@ -32,6 +32,8 @@ FilmOptions options(const py::kwargs& given) {
         throw py::type_error("size is (width, height) in pixels, not " + std::string(py::repr(value)));
       }
       made.width = size.first, made.height = size.second;
+      if (made.width < 1 || made.height < 1)
+        throw UsageError("a picture of " + std::string(py::repr(value)) + " pixels");
     } else if (name == "width") {
       made.width = value.cast<int>();
     } else if (name == "height") {
@@ -66,6 +68,13 @@ FilmOptions options(const py::kwargs& given) {
   return made;
 }
 
+// what the system would cut at a zero is an error
+std::string file_name(const py::object& path) {
+  const auto name = py::module_::import("os").attr("fspath")(path).cast<std::string>();
+  if (name.find('\0') != std::string::npos) throw py::value_error("a path has no zero in it");
+  return name;
+}
+
 // A picture of its own: an array, and what it shows.
 struct Picture {
   Pixels pixels;  // height x width x 4
@@ -87,6 +96,12 @@ Pixels with_alpha(const py::handle& given) {
   if (!all || (all.dtype().kind() != 'u' && all.dtype().kind() != 'i'))
     throw py::type_error("a frame is a Frame, or an array of bytes (uint8), 0 to 255" +
                          (all ? ", not of " + std::string(py::str(all.dtype())) : ""));
+  if (all.dtype().kind() != 'u' || all.dtype().itemsize() != 1) {
+    const py::object least = all.attr("min")(), most = all.attr("max")();
+    if (all.size() > 0 && (least.attr("__lt__")(0).cast<bool>() || most.attr("__gt__")(255).cast<bool>()))
+      throw py::value_error("a frame is of bytes, 0 to 255, not of " + std::string(py::str(least)) + " to " +
+                            std::string(py::str(most)));
+  }
   Pixels pixels = Pixels::ensure(all);
   if (pixels.ndim() != 3 || pixels.shape(2) != 3) return pixels;
   Pixels whole({pixels.shape(0), pixels.shape(1), py::ssize_t(4)});
@@ -149,14 +164,28 @@ struct Drawing {
 
 // A movie; none after an exception has left it.
 struct Recording {
-  std::unique_ptr<Movie> movie;
+  explicit Recording(std::unique_ptr<Movie> of) : movie(new std::unique_ptr<Movie>(std::move(of))) {
+    std::erase_if(recordings(), [](const auto& it) { return it.expired(); });
+    recordings().push_back(movie);
+  }
+  std::shared_ptr<std::unique_ptr<Movie>> movie;
   Movie& open() const {
-    if (!movie) throw UsageError("this movie was given up");
-    return *movie;
+    if (!*movie) throw UsageError("this movie was given up");
+    return **movie;
+  }
+  // all that there are: what is open when Python ends leaves nothing behind
+  static std::vector<std::weak_ptr<std::unique_ptr<Movie>>>& recordings() {
+    static std::vector<std::weak_ptr<std::unique_ptr<Movie>>> all;
+    return all;
   }
 };
 
 }  // namespace
+
+void give_up_movies() {
+  for (const auto& each : Recording::recordings())
+    if (const auto movie = each.lock()) movie->reset();
+}
 
 void add_film(py::module_& module) {
   py::class_<Picture>(module, "Frame", "A picture: red, green, blue and alpha, row 0 at the top.")
@@ -174,11 +203,14 @@ void add_film(py::module_& module) {
             return copy.is(py::bool_(true)) ? it.pixels.attr("copy")() : py::object(it.pixels);
           },
           py::arg("dtype") = py::none(), py::arg("copy") = py::none())
-      .def("save",
-           [](const Picture& it, const py::object& path) {
-             const py::object name = py::module_::import("os").attr("fspath")(path);
-             write_png(name.cast<std::string>(), frame_of(it.pixels), it.transparent);
-           })
+      .def(
+          "save",
+          [](const Picture& it, const py::object& path) {
+            const std::string name = file_name(path);
+            if (!name.ends_with(".png")) throw UsageError(name + ": a frame is a PNG, name.png");
+            write_png(name, frame_of(it.pixels), it.transparent);
+          },
+          py::arg("path"), "As a PNG.")
       .def("_repr_png_", [](const Picture& it) {
         const auto bytes = png(frame_of(it.pixels), it.transparent);
         return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -201,40 +233,49 @@ void add_film(py::module_& module) {
              if (!frame) throw py::stop_iteration();
              return it.kept(*frame);
            })
-      .def("at",
-           [](Drawing& it, double t) {
-             const Frame frame = unlocked([&] { return it.renderer->at(t); });
-             return it.kept(frame);
-           })
-      .def("draw", [](Drawing& it, const World& world) {
-        const Frame frame = unlocked([&] { return it.renderer->draw(world); });
-        return it.kept(frame);
-      });
+      .def(
+          "at",
+          [](Drawing& it, double t) {
+            const Frame frame = unlocked([&] { return it.renderer->at(t); });
+            return it.kept(frame);
+          },
+          py::arg("t"), "The picture at t seconds.")
+      .def(
+          "draw",
+          [](Drawing& it, const World& world) {
+            const Frame frame = unlocked([&] { return it.renderer->draw(world); });
+            return it.kept(frame);
+          },
+          py::arg("world"), "The picture of a world as it stands.");
 
   py::class_<Recording>(module, "Movie")
       .def(py::init([](const std::string& path, const py::object& renderer, const py::kwargs& how) {
-             if (renderer.is_none()) return Recording{std::make_unique<Movie>(path, options(how))};
-             return Recording{
-                 std::make_unique<Movie>(path, *renderer.cast<Drawing&>().renderer, options(how))};
+             if (renderer.is_none()) return Recording(std::make_unique<Movie>(path, options(how)));
+             return Recording(
+                 std::make_unique<Movie>(path, *renderer.cast<Drawing&>().renderer, options(how)));
            }),
            py::arg("path"), py::arg("renderer") = py::none())
-      .def("add",
-           [](Recording& it, const py::object& frame) {
-             const Pixels pixels =
-                 py::isinstance<Picture>(frame) ? frame.cast<const Picture&>().pixels : with_alpha(frame);
-             const Frame view = frame_of(pixels);
-             Movie& movie = it.open();
-             unlocked([&] { movie.add(view); });
-           })
+      .def(
+          "add",
+          [](Recording& it, const py::object& frame) {
+            const Pixels pixels =
+                py::isinstance<Picture>(frame) ? frame.cast<const Picture&>().pixels : with_alpha(frame);
+            const Frame view = frame_of(pixels);
+            Movie& movie = it.open();
+            unlocked([&] { movie.add(view); });
+          },
+          py::arg("frame"), "One more frame: a Frame, or an array of height x width x 3 or 4 bytes.")
       .def("__len__", [](Recording& it) { return it.open().frames(); })
-      .def("close",
-           [](Recording& it) {
-             Movie& movie = it.open();
-             unlocked([&] { movie.close(); });
-           })
+      .def(
+          "close",
+          [](Recording& it) {
+            Movie& movie = it.open();
+            unlocked([&] { movie.close(); });
+          },
+          "Ends the movie: only then its file is there.")
       .def("__enter__", [](py::object self) { return self; })
       .def("__exit__", [](Recording& it, const py::object& type, const py::object&, const py::object&) {
-        if (!type.is_none()) return it.movie.reset();
+        if (!type.is_none()) return it.movie->reset();
         Movie& movie = it.open();
         unlocked([&] { movie.close(); });
       });

@@ -10,4 +10,9 @@ PYBIND11_MODULE(_obscura, module) {
   add_scene(module);
   add_world(module);
   add_film(module);
+  // before Python ends nothing of it may be at work
+  pybind11::module_::import("atexit").attr("register")(pybind11::cpp_function([] {
+    end_work();
+    give_up_movies();
+  }));
 }

@@ -126,30 +126,39 @@ void add_world(py::module_& module) {
       .def_property_readonly("step_length", &World::step_length, "s")
       .def(
           "step", [](World& it, std::int64_t count) { unlocked([&] { it.step(count); }); },
-          py::arg("count") = 1)
+          py::arg("count") = 1, "Goes on by so many steps of the physics clock.")
       .def(
-          "step_to", [](World& it, double t) { unlocked([&] { it.step_to(t); }); }, py::arg("t"))
-      .def("body", &World::body, py::arg("name"))
+          "step_to", [](World& it, double t) { unlocked([&] { it.step_to(t); }); }, py::arg("t"),
+          "Goes on to the step that is nearest to t s; one that is past stays.")
+      .def("body", &World::body, py::arg("name"), "The number of a body: its row in all columns.")
       .def_property("positions", &column<&World::positions>,
-                    &set_column<&World::positions, &World::set_positions>)
+                    &set_column<&World::positions, &World::set_positions>,
+                    "Centres of mass, m: a row a body.")
       .def_property("velocities", &column<&World::velocities>,
-                    &set_column<&World::velocities, &World::set_velocities>)
-      .def_property("turns", &column<&World::turns>, &set_column<&World::turns, &World::set_turns>)
-      .def_property("spins", &column<&World::spins>, &set_column<&World::spins, &World::set_spins>)
-      .def_property_readonly("first_turning", &World::first_turning)
-      .def("read", &World::read, py::arg("quantity"))
-      .def_property_readonly("quantities", &World::quantities)
+                    &set_column<&World::velocities, &World::set_velocities>, "m/s: a row a body.")
+      .def_property("turns", &column<&World::turns>, &set_column<&World::turns, &World::set_turns>,
+                    "Of bodies that turn, from first_turning on: angles, rad; in space quaternions of their "
+                    "principal axes.")
+      .def_property("spins", &column<&World::spins>, &set_column<&World::spins, &World::set_spins>,
+                    "Of bodies that turn, rad/s: a number a body, in space a row.")
+      .def_property_readonly("first_turning", &World::first_turning, "The first body that turns.")
+      .def("read", &World::read, py::arg("quantity"),
+           "A number of the state by its name: one of `quantities`.")
+      .def_property_readonly("quantities", &World::quantities,
+                             "The columns of `obscura states --format csv`.")
       .def_property_readonly("energies", &World::energies)
-      .def_property_readonly("contacts", &World::contacts)
-      .def("contact_changes",
-           [](World& it) {
-             const ContactChanges changes = it.contact_changes();
-             return py::make_tuple(changes.began, changes.ended);
-           })
-      .def_property_readonly("events", &World::events)
-      .def("save", &World::save)
-      .def("restore", &World::restore, py::arg("state"))
-      .def_property_readonly("hash", &World::hash);
+      .def_property_readonly("contacts", &World::contacts, "What touches now.")
+      .def(
+          "contact_changes",
+          [](World& it) {
+            const ContactChanges changes = it.contact_changes();
+            return py::make_tuple(changes.began, changes.ended);
+          },
+          "Pairs that touch and did not at the last call, and pairs that did and do not.")
+      .def_property_readonly("events", &World::events, "The scene's events that have fired.")
+      .def("save", &World::save, "The whole state, as a value.")
+      .def("restore", &World::restore, py::arg("state"), "Goes on from a state of this scene.")
+      .def_property_readonly("hash", &World::hash, "Of the state: equal for equal runs, to the bit.");
 }
 
 }  // namespace obscura::python

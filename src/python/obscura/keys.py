@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import difflib
 import functools
 import json
@@ -29,6 +30,46 @@ def is_list(node: dict) -> bool:
     return node.get("type") == "array" and "properties" in node.get("items", {})
 
 
+class Items(list):
+    """A list of a scene: what changes it, or a list within it, changes the scene."""
+
+    def __init__(self, values, changed):
+        super().__init__(Items(value, self._tell) if isinstance(value, list) else value for value in values)
+        self._changed = changed
+
+    def _tell(self) -> None:
+        self._changed()
+
+    def plain(self) -> list:
+        return [value.plain() if isinstance(value, Items) else value for value in self]
+
+    def __reduce__(self):
+        return list, (self.plain(),)
+
+    def __deepcopy__(self, memo) -> list:
+        return copy.deepcopy(self.plain(), memo)
+
+
+def _telling(name: str):
+    of_list = getattr(list, name)
+
+    @functools.wraps(of_list)
+    def change(self, *arguments, **options):
+        answer = of_list(self, *arguments, **options)
+        for i, value in enumerate(self):
+            if isinstance(value, list) and not isinstance(value, Items):
+                list.__setitem__(self, i, Items(value, self._tell))
+        self._tell()
+        return answer
+
+    return change
+
+
+for _name in ("__setitem__", "__delitem__", "__iadd__", "__imul__", "append", "extend", "insert", "pop", "remove",
+              "clear", "sort", "reverse"):
+    setattr(Items, _name, _telling(_name))
+
+
 class Section:
     """A table of a scene: its keys are attributes, checked by name when they are set."""
 
@@ -50,11 +91,15 @@ class Section:
             return Kind(path, self._data, name, properties(node), self._touch)
         if properties(node) and not isinstance(self._data.get(name, {}), list):
             return Section(path, _Late(self._data, name), properties(node), self._touch)
-        return self._data[name] if name in self._data else node.get("default")
+        value = self._data[name] if name in self._data else node.get("default")
+        if not isinstance(value, list):
+            return value
+        items = Items(value, lambda: setattr(self, name, items.plain()))
+        return items
 
     def __setattr__(self, name: str, value: Any) -> None:
         self._key(name)
-        self._data[name] = value
+        self._data[name] = value.plain() if isinstance(value, Items) else value
         self._touch()
 
     def __delattr__(self, name: str) -> None:
@@ -105,7 +150,11 @@ class Kind:
     """The things of a kind, as [[ball]] lists them: by number, or by name."""
 
     def __init__(self, path: str, owner: Any, name: str, keys: dict, touch):
-        self._path, self._owner, self._name, self._keys, self._touch = path, owner, name, keys, touch
+        self.__dict__.update(_path=path, _owner=owner, _name=name, _keys=keys, _touch=touch)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        example = f"scene.{self._path}[0].{name}"
+        raise AttributeError(f"[[{self._path}]] is a list: set the key of one of them, as {example} = ...")
 
     def _list(self) -> list:
         return self._owner.get(self._name) or []
@@ -116,7 +165,10 @@ class Kind:
                 if each.get("name") == which:
                     return i
             raise KeyError(f"no [[{self._path}]] is called '{which}'")
-        return range(len(self._list()))[which]
+        try:
+            return range(len(self._list()))[which]
+        except IndexError:
+            raise IndexError(f"the scene has {len(self._list())} [[{self._path}]]") from None
 
     def add(self, **keys: Any) -> Section:
         """One more."""

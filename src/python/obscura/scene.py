@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import base64
 import copy
+import difflib
 import html
+import json
 import os
 from typing import Any, Callable, Iterable, Mapping, Sequence
 
 import numpy
 
 from . import _obscura
+from .errors import SceneError, UsageError
 from .keys import Section, schema
 
 
@@ -21,6 +24,8 @@ class Figure:
         self.svg = svg
 
     def save(self, path: str | os.PathLike) -> None:
+        if not os.fspath(path).endswith(".svg"):
+            raise UsageError(f"{os.fspath(path)}: a figure is an SVG, name.svg")
         with open(path, "w", encoding="utf-8") as file:
             file.write(self.svg)
 
@@ -54,14 +59,16 @@ class Scene(Section):
         else:
             if keys:
                 raise TypeError("a scene is a file or keys, not both: set keys after it is read")
-            self._begin(("file", os.fspath(source), list(sets)), None)
-            self._built()
+            file = os.fspath(source)
+            self._begin(("file", file, _words(sets)), None)
+            # what was read stays what it is, wherever it goes
+            self.__dict__["_source"] = ("text", self._built().text, file, _words(sets))
 
     @classmethod
     def parse(cls, text: str, name: str = "scene.toml", sets: Sequence[str] = ()) -> "Scene":
         """A scene of TOML; `name` stands for the file in messages."""
         scene = cls.__new__(cls)
-        scene._begin(("text", text, name, list(sets)), None)
+        scene._begin(("text", text, name, _words(sets)), None)
         scene._built()
         return scene
 
@@ -82,7 +89,7 @@ class Scene(Section):
     def _touch(self) -> None:
         self.__dict__["_made"] = None
         if self._source[0] != "keys":
-            self.__dict__["_source"] = ("keys", self._source[1] if self._source[0] == "file" else self._source[2])
+            self.__dict__["_source"] = ("keys", self._source[2])
 
     def _built(self):
         if self._made is None:
@@ -109,8 +116,13 @@ class Scene(Section):
         """Another one, whose keys may be changed."""
         other = Scene.__new__(Scene)
         other._begin(self._source, copy.deepcopy(self._own))
-        other.__dict__["_forces"] = list(self._forces)
+        other.__dict__.update(_forces=list(self._forces), _made=self._made)
         return other
+
+    __copy__ = copy
+
+    def __deepcopy__(self, memo: dict) -> "Scene":
+        return self.copy()
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):
@@ -123,7 +135,10 @@ class Scene(Section):
         return sorted({*self._keys, *(name for name in dir(type(self)) if not name.startswith("_"))})
 
     def __repr__(self) -> str:
-        scene = self._built()
+        try:
+            scene = self._built()
+        except SceneError as error:
+            return f"<Scene, not yet whole: {error.faults[0]}>"
         return (f"<Scene {scene.name}: {len(scene.bodies)} bodies in {'the plane' if scene.dimension == 2 else 'space'}, "
                 f"{scene.duration:g} s>")
 
@@ -131,7 +146,7 @@ class Scene(Section):
 
     @property
     def text(self) -> str:
-        """As TOML."""
+        """As TOML, without what `sets` put over it."""
         return self._built().text
 
     @property
@@ -162,12 +177,22 @@ class Scene(Section):
         """A force on all bodies, called in every stage of the integrator.
 
         force(stage) returns forces (N, a row a body), or forces and torques, or fills stage.forces and stage.torques.
-        Its answer follows from the stage alone. A film of such a scene cannot be verified, and says so.
+        Its answer follows from the stage alone. A film of such a scene cannot be verified, and says so. One of the
+        same name takes the place of that which was added before.
         """
+        if not callable(force):
+            raise TypeError(f"a force is a function of a stage, not {force!r}")
         name = name or getattr(force, "__name__", "force")
+        self.remove_force(name)
         made = self._built().with_force(name, force)
         self._forces.append((name, force))
         self.__dict__["_made"] = made
+
+    def remove_force(self, name: str) -> None:
+        """Takes away the force that add_force() added under this name, if there is one."""
+        left = [each for each in self._forces if each[0] != name]
+        if len(left) < len(self._forces):
+            self.__dict__.update(_forces=left, _made=None)
 
     # --- what is made of it
 
@@ -199,6 +224,9 @@ class Scene(Section):
 
     def picture(self, at: float | Iterable[float] = (), **options: Any) -> Figure:
         """Its figure for print, as `obscura figure` draws it, at one instant or several."""
+        for name in options:
+            if name not in ("theme", "camera", "transparent"):
+                raise TypeError(f"a figure has no option '{name}': its size is figure.width")
         times = [float(at)] if numpy.isscalar(at) else [float(t) for t in at]
         return Figure(_obscura.figure_svg(self._built(), times, **options))
 
@@ -210,8 +238,10 @@ class Scene(Section):
         --measure energy.total@5`. What a run did not come to is nan; "trouble" says why.
         """
         if isinstance(vary, Mapping):
-            vary = [f"{key}=" + ",".join(str(value) for value in values) for key, values in vary.items()]
+            vary = [f"{key}=" + ",".join(_toml(value, key) for value in values) for key, values in vary.items()]
         measure = [measure] if isinstance(measure, str) else list(measure)
+        if jobs < 0:
+            raise UsageError(f"jobs {jobs}: expected 0 (all cores) or more")
         heads, rows = _obscura.sweep(self._built(), list(vary), measure, jobs)
         columns = {head: [row[i] for row in rows] for i, head in enumerate(heads)}
         return {head: numpy.array(cells) if head == "trouble" else _column(cells) for head, cells in columns.items()}
@@ -223,6 +253,26 @@ class Scene(Section):
         width, height = getattr(film, "size", None) or (1920, 1080)
         return (f'<iframe srcdoc="{page}" style="width:100%;aspect-ratio:{width}/{height * 1.08:g};border:0" '
                 'sandbox="allow-scripts"></iframe>')
+
+
+def _words(sets: Sequence[str]) -> list[str]:
+    if isinstance(sets, str):
+        raise TypeError(f"'sets' is a list, as in sets=[{sets!r}]")
+    return list(sets)
+
+
+def _toml(value: Any, key: str) -> str:
+    """A value of a key, as `obscura sweep --vary` takes it."""
+    value = value.tolist() if hasattr(value, "tolist") else value
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        if "," in value:
+            raise UsageError(f"{key}: values of words are without commas, not {value!r}")
+        return value
+    if isinstance(value, (list, tuple)):
+        return "[" + ",".join(json.dumps(each) if isinstance(each, str) else _toml(each, key) for each in value) + "]"
+    return repr(value)
 
 
 def _column(cells: list[str]) -> numpy.ndarray:
@@ -241,12 +291,26 @@ class World(_obscura.World):
     """
 
     def __init__(self, scene: Scene, threads: int = 1):
+        if not isinstance(scene, Scene):
+            raise TypeError(f"a world is of a Scene, not of {scene!r}")
         super().__init__(scene._built(), threads)
-        self.scene = scene
-        self._threads = threads
+        # as it is now: what is changed of it later is the next world's
+        object.__setattr__(self, "_scene", scene.copy())
+        object.__setattr__(self, "_threads", threads)
+
+    @property
+    def scene(self) -> Scene:
+        """What it runs, as that was when the world was made."""
+        return self._scene
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not isinstance(getattr(type(self), name, None), property):
+            near = difflib.get_close_matches(name, [each for each in dir(type(self)) if not each.startswith("_")], 1)
+            raise AttributeError(f"a world has no '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))
+        super().__setattr__(name, value)
 
     def __reduce__(self):
-        return _world, (self.scene, self.save(), self._threads)
+        return _world, (self._scene, self.save(), self._threads)
 
     def __repr__(self) -> str:
         return f"<World {self.scene.name} at {self.time:g} s>"
@@ -265,6 +329,8 @@ class Renderer(_obscura.Renderer):
     """
 
     def __init__(self, scene: Scene, **options: Any):
+        if not isinstance(scene, Scene):
+            raise TypeError(f"a renderer is of a Scene, not of {scene!r}")
         super().__init__(scene._built(), **options)
 
 
@@ -276,4 +342,7 @@ class Movie(_obscura.Movie):
     """
 
     def __init__(self, path: str | os.PathLike, renderer: Renderer | None = None, **options: Any):
+        for name in ("size", "width", "height", "fps"):
+            if renderer is not None and name in options:
+                raise TypeError(f"a movie of a renderer has the renderer's {name}")
         super().__init__(os.fspath(path), renderer, **options)

@@ -350,6 +350,10 @@ std::string RunOf<D>::set(const NewBodyColumns& columns) {
     };
     if (body.linked && other(next, state_))
       return body.name + " is a link, moved by the joints of its chain: only a saved state can be restored";
+    if (body.fixed &&
+        (!next.v[std::size_t(i)].isZero(0) || (k >= 0 && !next.spin[std::size_t(k)].isZero(0))) &&
+        !body.driven)
+      return body.name + " is fixed: it has no velocity and no spin";
     if (D == 2 || k < 0) continue;
     Orientation<D>& turn = next.turn[std::size_t(k)];
     if (!(turn.squaredNorm() > 0)) return "the turn of " + body.name + " is no quaternion";

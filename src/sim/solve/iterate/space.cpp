@@ -290,7 +290,7 @@ void SpaceIterative::set_aims(int begin, int end, const State<D>& state, double 
     const bool lasting = known_one && lasts(touch, known->force);
     if (touch.after) {
       // what is left of the step
-    } else if (!lasting && before < -restitution_threshold_ && touch.gap + h * (before - g_ * h) < 0) {
+    } else if (!lasting && before < -strike_speed(touch) && touch.gap + h * (before - g_ * h) < 0) {
       touch.least = touch.passes ? -1e9 : -touch.bounce * before;
       touch.blow = !touch.passes;
       touch.bounces = !touch.passes && touch.bounce > 0;

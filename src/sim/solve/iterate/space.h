@@ -168,6 +168,8 @@ class SpaceIterative final : public Iterative<3> {
   const Flown& flown(int body, double t, double h, Flown* own = nullptr) const;
   Flown fly(int body, double t, double h) const;
   Instant instant(int touch, double t, double h, Flown* own = nullptr) const;
+  Vec<D> free_gain(int body) const;
+  double strike_speed(const ContactConstraint& touch) const;
   double closing_time(int touch, double h);
   double meeting_time(int touch, double h, Flown* own = nullptr) const;
   bool may_turn_into(int first, int end, double h, Flown* own, double& least) const;
@@ -246,6 +248,7 @@ class SpaceIterative final : public Iterative<3> {
   double leads() const;
   void gather_bodies(const State<D>& state);
   void take_out_contacts(State<D>& state, double h);
+  void take_out(int body, double h, Vec<D>& x, Vec<D>& v, Orientation<D>* turn, AngularVec<D>* spin) const;
   double integrate_step(StepPart<D> part);
   void share_free_motion(State<D>& state, double h);
   void move_driven(State<D>& state, double t, double h);
@@ -316,6 +319,7 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<double> given_;                       // by the contacts of each island, J
   bool struck_ = false;                             // whether any body had an impact in this step
   std::vector<double> when_;                        // bodies: s, their last impact in it; or -1
+  std::vector<Flown> borne_ends_;                   // of bodies on joints, with what contacts give
   std::vector<Flown> flown_;                        // after it, or as the step began
   mutable std::vector<Course> courses_;
   std::vector<Fastest> fastest_;

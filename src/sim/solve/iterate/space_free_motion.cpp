@@ -83,19 +83,25 @@ void SpaceIterative::take_out_contacts(State<D>& state, double h) {
   const int n = int(model_.bodies.size());
   for (int i = 0; i < n; ++i) {
     if (!gives(i) || joints_.has(i)) continue;
-    const Twist<D>& its = borne_[std::size_t(i)];
-    state.v[std::size_t(i)] -= h * its.v, state.x[std::size_t(i)] -= leads() * h * h * its.v;
-    const int number = turning(state, i);
-    if (number < 0) continue;
-    // as place() gives it back: angular momentum stays where a body turns
-    const auto k = std::size_t(number);
-    const AngularVec<D>&inertia = model_.bodies[std::size_t(i)].inertia, change = h * its.w;
-    const Rotation<D> with = rotation<D>(state.turn[k]);
-    state.turn[k] = turned<D>(state.turn[k], AngularVec<D>(-leads() * h * change));
-    const Rotation<D> now = rotation<D>(state.turn[k]);
-    state.spin[k] = carried_spin<D>(inertia, with, now, state.spin[k]) -
-                    carried_spin<D>(inertia, stances_[std::size_t(i)].room_from_body, now, change);
+    const int k = turning(state, i);
+    take_out(i, h, state.x[std::size_t(i)], state.v[std::size_t(i)],
+             k < 0 ? nullptr : &state.turn[std::size_t(k)], k < 0 ? nullptr : &state.spin[std::size_t(k)]);
   }
+}
+
+// the same of one body, and of where it is at the end of the free motion
+void SpaceIterative::take_out(int body, double h, Vec<D>& x, Vec<D>& v, Orientation<D>* turn,
+                              AngularVec<D>* spin) const {
+  const Twist<D>& its = borne_[std::size_t(body)];
+  v -= h * its.v, x -= leads() * h * h * its.v;
+  if (!turn) return;
+  // as place() gives it back: angular momentum stays where a body turns
+  const AngularVec<D>&inertia = model_.bodies[std::size_t(body)].inertia, change = h * its.w;
+  const Rotation<D> with = rotation<D>(*turn);
+  *turn = turned<D>(*turn, AngularVec<D>(-leads() * h * change));
+  const Rotation<D> now = rotation<D>(*turn);
+  *spin = carried_spin<D>(inertia, with, now, *spin) -
+          carried_spin<D>(inertia, stances_[std::size_t(body)].room_from_body, now, change);
 }
 
 // By the scene's scheme, which for the whole step is shared out where it is of first order: of Euler's or the

@@ -108,21 +108,34 @@ SpaceIterative::Instant SpaceIterative::instant(int i, double t, double h, Flown
   return at;
 }
 
+// what the free motion adds to a body's velocity
+Vec<3> SpaceIterative::free_gain(int body) const {
+  if (body == int(inactive_.size()) || (inactive_[body] && drives_.number(body) < 0)) return Vec<D>::Zero();
+  return v_free_[body] - stances_[body].v;
+}
+
+// What closes slower than twice what the free motion makes it close within the substep does so by that, and
+// strikes nothing: of gravity, restitution_threshold_. Schemes that share out a whole step lead what bears
+// aside, and it is struck.
+double SpaceIterative::strike_speed(const ContactConstraint& touch) const {
+  if (!smooth()) return restitution_threshold_;
+  const auto gain = [&](int body) -> Vec<D> {
+    return body < int(inactive_.size()) && inactive_[body] ? Vec<D>(Vec<D>::Zero()) : free_gain(body);
+  };
+  return std::max(restitution_threshold_, -2 * touch.n.dot(gain(touch.a) - gain(touch.b)));
+}
+
 // How fast the matter of two bodies passes at most, m/s, wherever they touch in the step before an impact: at
 // the contact, and farther from it by how differently they turn and fall.
 double SpaceIterative::most_passing(const ContactConstraint& touch) const {
   static const BodyMotion<D> room;
   const bool wall = touch.b == int(inactive_.size());
   const BodyMotion<D>&a = stances_[touch.a], &b = wall ? room : stances_[touch.b];
-  const auto gain = [&](int body) -> Vec<D> {
-    if (body == int(inactive_.size()) || (inactive_[body] && drives_.number(body) < 0)) return Vec<D>::Zero();
-    return v_free_[body] - stances_[body].v;
-  };
   const double size =
       wall ? bounding_radius_[touch.a] : std::min(bounding_radius_[touch.a], bounding_radius_[touch.b]);
   const Vec<D> here = a.velocity(touch.arm_a) - b.velocity(touch.arm_b);
   const AngularVec<D> turns = a.w - b.w;
-  return std::sqrt(here.squaredNorm()) + std::sqrt((gain(touch.a) - gain(touch.b)).squaredNorm()) +
+  return std::sqrt(here.squaredNorm()) + std::sqrt((free_gain(touch.a) - free_gain(touch.b)).squaredNorm()) +
          kWidest * size * std::sqrt(turns.squaredNorm());
 }
 
@@ -195,14 +208,14 @@ double SpaceIterative::meeting_time(int i, double h, Flown* own) const {
   const ContactConstraint& touch = touches_[i];
   const double from = std::max({0.0, when_[touch.a], when_[touch.b]});
   const Instant at = instant(i, from, h, own);
-  const bool nears = at.speed < -restitution_threshold_;
+  const double slow = -strike_speed(touch);
+  const bool nears = at.speed < slow;
   const double gap = at.now.value;
   if (gap <= 0) return nears ? from : kNeverCloses;
-  return sim::closing_time(from, nears ? from - gap / at.speed : kNeverCloses, h, -restitution_threshold_,
-                           [&](double when) {
-                             const Instant then = instant(i, when, h, own);
-                             return GapInTime{then.now.value, then.speed};
-                           });
+  return sim::closing_time(from, nears ? from - gap / at.speed : kNeverCloses, h, slow, [&](double when) {
+    const Instant then = instant(i, when, h, own);
+    return GapInTime{then.now.value, then.speed};
+  });
 }
 
 // the gaps of a pair at a time, by the features that are nearest then, into `gaps`; how wide the least of

@@ -119,7 +119,7 @@ bool SpaceIterative::build_impact_rows(double t, double h) {
           row.along.dot(at.a.v - at.b.v) + row.angular_a.dot(at.a.w) - row.angular_b.dot(at.b.w);
       if (i > 0 && !touch.belt.isZero(0)) instant_.speeds[D * k + i] += row.along.dot(touch.belt);
     }
-    if (instant_.speeds[D * k] < -restitution_threshold_)
+    if (instant_.speeds[D * k] < -strike_speed(touch))
       instant_.strikes[k] = 1, instant_.elasticity[k] = touch.bounce;
     if (joints_.empty()) continue;
     for (const auto& [body, it] : {std::pair(touch.a, &at.a), std::pair(touch.b, &at.b)}) {
@@ -216,13 +216,37 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
       if (fast(i)) any = true;
   });
   if (!any) return;
+  // what is struck flies without contacts, also on joints
+  std::vector<Flown>& borne = borne_ends_;
+  borne.clear();
+  for (const int i : joints_.bodies()) {
+    if (!gives(i)) continue;
+    const int k = turning(state, i);
+    Flown& end = borne.emplace_back();
+    end.stance.x = x_free_[std::size_t(i)], end.stance.v = v_free_[std::size_t(i)];
+    if (k >= 0) end.turn = turn_free_[std::size_t(k)], end.stance.w = w_free_[std::size_t(k)];
+    take_out(i, h, x_free_[std::size_t(i)], v_free_[std::size_t(i)],
+             k < 0 ? nullptr : &turn_free_[std::size_t(k)], k < 0 ? nullptr : &w_free_[std::size_t(k)]);
+  }
+  const auto give_back = [&] {
+    auto end = borne.begin();
+    for (const int i : joints_.bodies()) {
+      if (!gives(i)) continue;
+      const int k = turning(state, i);
+      if (when_[i] < 0) {
+        x_free_[std::size_t(i)] = end->stance.x, v_free_[std::size_t(i)] = end->stance.v;
+        if (k >= 0) turn_free_[std::size_t(k)] = end->turn, w_free_[std::size_t(k)] = end->stance.w;
+      }
+      ++end;
+    }
+  };
   begin_flights(state, h);
   find_closing(state, h);
   renewed_.clear();
   rounds_.assign(n + 1, 0), crowded_.assign(n + 1, 0);
   find_turned_pairs(h);
   if (due_.empty()) {
-    restore_features();
+    restore_features(), give_back();
     return;
   }
 
@@ -268,7 +292,7 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
     }
   }
   restore_features();
-  if (!struck_) return;
+  if (!struck_) return give_back();
 
   for (int i = 0; i < int(touches_.size()); ++i) {
     ContactConstraint& touch = touches_[i];
@@ -296,6 +320,7 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
       state.turn[k] = turn_free_[k] = end.turn, state.spin[k] = w_free_[k] = moving_[i].w = end.stance.w;
     }
   }
+  give_back();
   energy_guard_.open(state);
 }
 
