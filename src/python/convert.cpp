@@ -21,9 +21,10 @@ std::atomic<bool> ending = false;
 std::atomic<int> working = 0;
 std::thread::id ends;  // the thread that ends Python
 
-// a thread that Python's end has overtaken: it must not ask for the lock, as Python would unwind it
-void stay_if_ending() {
-  while (ending && std::this_thread::get_id() != ends) std::this_thread::sleep_for(std::chrono::hours(1));
+// whether Python's end has overtaken this thread: it must not ask for the lock, as Python would unwind it
+bool overtaken() { return ending && std::this_thread::get_id() != ends; }
+[[noreturn]] void stay() {
+  for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
 }  // namespace
@@ -108,11 +109,13 @@ std::string shape(const py::array& of) {
   return text;
 }
 
+// Work counts from before the lock is let go until it is held again.
 Unlocked::Unlocked() {
-  stay_if_ending();
   ++working;
+  saved_ = PyEval_SaveThread();
+  if (overtaken()) --working, stay();
   interrupt_by([asked = std::chrono::steady_clock::now(), ended = false]() mutable {
-    if (ending && std::this_thread::get_id() != ends) return true;
+    if (overtaken()) return true;
     const auto now = std::chrono::steady_clock::now();
     if (ended || now - asked < kAsk) return ended;
     asked = now;
@@ -123,8 +126,9 @@ Unlocked::Unlocked() {
 
 Unlocked::~Unlocked() {
   interrupt_by({});
+  if (overtaken()) --working, stay();
+  PyEval_RestoreThread(saved_);
   --working;
-  stay_if_ending();
 }
 
 // The classes of exceptions are Python's (obscura/errors.py), so that they have attributes, and pickle.

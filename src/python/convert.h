@@ -40,7 +40,7 @@ class __attribute__((visibility("hidden"))) Unlocked {
   ~Unlocked();
 
  private:
-  pybind11::gil_scoped_release released_;
+  PyThreadState* saved_;
 };
 
 /// act() without Python's lock.

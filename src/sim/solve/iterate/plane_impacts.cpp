@@ -137,8 +137,8 @@ bool Impacts::predict(int i, Impact& impact, const std::vector<ContactBatch>& ba
   return true;
 }
 
-// one pair, both touches together
-void Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, const Step& step,
+// one pair, both touches together; false where joints leave it nothing to move
+bool Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, const Step& step,
                       JointSolver<2>& joints) {
   const Pair& pair = step.pairs[impact.pair];
   const int a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
@@ -155,6 +155,7 @@ void Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
     for (int k = 0; k < 2; ++k)
       closes[k] = closes[k] && joints.response_between(responses_[0][k], responses_[0][k]) >
                                    InstantImpact<2>::kLockedPush * (ima + imb);
+    if (!closes[0] && !closes[1]) return false;
   }
 
   const Motion va = motion_at(a, impact.when, step), vb = motion_at(b, impact.when, step);
@@ -197,6 +198,7 @@ void Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
     drive_work_ -= n * speed(pushes[0][k], ua, ub) + t * (speed(pushes[1][k], ua, ub) + g.belt[lane]);
     if (tied) drive_work_ += n * joints.given(responses_[0][k]) + t * joints.given(responses_[1][k]);
   }
+  return true;
 }
 
 // Sets the targets of the iterations for the pairs of bodies that had impacts. Their rows are those of the
@@ -337,8 +339,7 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
       }
       continue;
     }
-    resolve(impact, batches, step, joints);
-    had_impact(impact, step, joints);
+    if (resolve(impact, batches, step, joints)) had_impact(impact, step, joints);
   }
 
   for (const int body : bodies_) {

@@ -123,7 +123,7 @@ class Impacts {
   int rounds(const Pair& pair) const { return rounds_[pair.a] + (pair.b < 0 ? 0 : rounds_[pair.b]); }
   void look_at(int pair);
   bool predict(int pair, Impact& impact, const std::vector<ContactBatch>& batches, const Step& step);
-  void resolve(Impact& impact, const std::vector<ContactBatch>& batches, const Step& step,
+  bool resolve(Impact& impact, const std::vector<ContactBatch>& batches, const Step& step,
                JointSolver<2>& joints);
   bool reach_component(const Pair& pair, double when, const Step& step, const JointSolver<2>& joints);
   std::pair<double, double> place_at(int body, double when, const Step& step) const;

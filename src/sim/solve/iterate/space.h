@@ -202,7 +202,7 @@ class SpaceIterative final : public Iterative<3> {
   void set_rows(int k, const ContactConstraint& touch, const Vec<D>& normal, const Vec<D>& arm_a,
                 const Vec<D>& arm_b, const BodyMotion<D>& a, const BodyMotion<D>& b);
   void couple_rows(Eigen::Ref<Eigen::MatrixXd> K) const;
-  bool build_impact_rows(double t, double h);
+  int build_impact_rows(double t, double h);
   bool solve_impact(double t, double h, std::vector<double>& work);
   // act(body) for what moves of a side of a touch, and for all that hangs together with it on joints
   template <class Act>

@@ -100,9 +100,9 @@ void SpaceIterative::gather_ends(double t, double h) {
   struck_ends_.limit();
 }
 
-// the rows of what meets at a time, n and across it of each gap, their M^-1 J', K and J v; false where joints
-// leave it nothing to move
-bool SpaceIterative::build_impact_rows(double t, double h) {
+// the rows of what meets at a time, n and across it of each gap, their M^-1 J', K and J v; or the number of one
+// of them that joints leave nothing to move, else negative
+int SpaceIterative::build_impact_rows(double t, double h) {
   const int count = int(meets_.size()), rows = D * count, n = int(model_.bodies.size());
   begin_rows(count);
   impact_tied_ = false;
@@ -131,7 +131,7 @@ bool SpaceIterative::build_impact_rows(double t, double h) {
   }
   if (!impact_tied_) {
     couple_rows(instant_.K);
-    return true;
+    return -1;
   }
   auto& K = instant_.K;
   if (int(tied_responses_.size()) < rows) tied_responses_.resize(rows);
@@ -142,15 +142,18 @@ bool SpaceIterative::build_impact_rows(double t, double h) {
       K(i, j) = K(j, i) = joints_.response_between(tied_responses_[i], tied_responses_[j]);
     const Row<D>& row = impact_rows_[i];
     const double without = response_.inverse_mass(row.a) + response_.inverse_mass(row.b);
-    if (i % D == 0 && !(K(i, i) > InstantImpact<D>::kLockedPush * without)) return false;
+    if (i % D == 0 && !(K(i, i) > InstantImpact<D>::kLockedPush * without)) return i / D;
   }
   struck_ends_.couple(joints_, std::span(tied_responses_).first(std::size_t(rows)), instant_);
-  return true;
+  return -1;
 }
 
 // all that meets at a time, at once; false where no impulses were found
 bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work) {
-  if (!build_impact_rows(t, h)) return false;
+  for (int locked = build_impact_rows(t, h); locked >= 0; locked = build_impact_rows(t, h)) {
+    if (meets_.size() == 1) return false;
+    meets_.erase(meets_.begin() + locked);
+  }
   const int rows = int(impact_rows_.size());
   if (!instant_.solve()) return false;
   const auto& impulses = instant_.p;
