@@ -116,6 +116,77 @@ def test_keys_are_attributes_and_wrong_ones_are_named():
     assert len(scene.bodies) == 1
 
 
+def test_a_list_changed_in_place_changes_the_scene():
+    for scene in (room(), obscura.Scene.parse(room().text)):
+        before = scene.hash
+        scene.ball[0].position[1] = 1.0
+        assert scene.hash != before and scene.ball[0].position == [3, 1.0]
+        assert scene.world().positions[0].tolist() == [3, 1]
+        scene.ball[0].position += [1]
+        assert scene.ball[0].position == [3, 1.0, 1]
+    with pytest.raises(AttributeError, match=r"scene\.ball\[0\]\.elasticity"):
+        room().ball.elasticity = 0.5
+    with pytest.raises(AttributeError, match="did you mean 'velocities'"):
+        room().world().velocity = [[1, 0]]
+
+
+def test_copies_and_pickles_keep_what_was_read(tmp_path):
+    (tmp_path / "a.toml").write_text(room().text)
+    scene = obscura.Scene(tmp_path / "a.toml")
+    world = scene.world()
+    world.step(5)
+    kept, going = pickle.dumps(scene), pickle.dumps(world)
+    (tmp_path / "a.toml").unlink()
+    assert pickle.loads(kept) == scene == scene.copy() == copy.copy(scene) == copy.deepcopy(scene)
+    scene.physics.rate = 50
+    other = pickle.loads(going)
+    other.step(5), world.step(5)
+    assert other.hash == world.hash and world.scene.physics.rate == 100
+    changed = copy.copy(scene)
+    changed.ball[0].radius = 0.3
+    changed.add_force(spring, "spring")
+    changed.add_force(spring, "spring")
+    assert scene.ball[0].radius == 0.1 and scene.world().hash != changed.world().hash
+    changed.remove_force("spring")
+    assert changed != scene and changed._forces == []
+
+
+def test_work_of_other_threads_ends_with_python(tmp_path):
+    (tmp_path / "end.py").write_text(f"""
+import obscura, threading, time
+scene = obscura.Scene({str(ROOT / "scenes/room.toml")!r})
+movie = obscura.Movie({str(tmp_path / "open.mp4")!r}, size=(16, 16), fps=10)
+
+def work(world=scene.world()):
+    while True:
+        world.step(10)
+
+threading.Thread(target=work, daemon=True).start()
+time.sleep(0.2)
+""")
+    assert subprocess.run([sys.executable, tmp_path / "end.py"], capture_output=True, timeout=60).returncode == 0
+    assert sorted(os.listdir(tmp_path)) == ["end.py"]
+
+
+def test_what_does_not_fit_is_an_error(tmp_path):
+    with pytest.raises(ValueError, match="0 to 255"):
+        with obscura.Movie(tmp_path / "a.mp4", size=(16, 16), fps=10) as movie:
+            movie.add(np.full((16, 16, 3), 300))
+    with pytest.raises(obscura.UsageError, match="is a PNG"):
+        room().frame(**SMALL).save(tmp_path / "a.jpg")
+    fixed = room(box=[{"name": "plate", "size": [1, 1], "position": [1, 1], "fixed": True}]).world()
+    with pytest.raises(obscura.UsageError, match="plate is fixed"):
+        fixed.velocities = fixed.velocities + [1, 0]
+    endless = []
+    endless.append(endless)
+    scene = room()
+    scene.ball[0].__dict__["_data"]["position"] = endless
+    with pytest.raises(ValueError, match="nested too deep"):
+        obscura._obscura.toml(scene._data)
+    found = room().sweep({"b.fixed": [True, False], "b.velocity": [(0, 1), np.array([0.0, 0.0])]}, "b.position.y@1")
+    assert list(found["b.fixed"]) == ["true", "true", "false", "false"] and list(found["trouble"][2:]) == ["", ""]
+
+
 def test_faults_have_their_place():
     with pytest.raises(obscura.SceneError) as found:
         obscura.Scene.parse("[room]\nsize = [4, 4]\n[[ball]]\nradius = -1\nposition = [1, 1]\n", "a.toml")
@@ -433,6 +504,7 @@ LONG = {
     "film": "obscura.Scene(room, sets=['duration=100000']).render('long.mp4', size=(160, 90))",
     "page": "obscura.Scene(room, sets=['duration=100000']).page(size=(160, 90))",
     "sweep": "obscura.Scene(room).sweep(['room.drag=0:1:1e-6'], 'energy.total@100000')",
+    "sweep of long runs": "obscura.Scene(room, sets=['duration=1000000']).sweep(['room.drag=0,1'], 'energy.total@1000000')",
 }
 
 
