@@ -65,7 +65,9 @@ void SpaceIterative::turn_friction(const State<D>& state) {
     if (!contact.slides) continue;
     const Vec<D> force = contact.ended(body_motion(state, contact.a),
                                        contact.b < 0 ? BodyMotion<D>() : body_motion(state, contact.b));
-    const Vec<D> more = force - contact.force;
+    // in place of friction against the slip with which the step begins
+    const Vec<D> more =
+        force - contact.ended(begun(contact.a), contact.b < 0 ? BodyMotion<D>() : begun(contact.b));
     add_borne(contact.a, more, Vec<D>(contact.point - begun(contact.a).x));
     if (contact.b >= 0) add_borne(contact.b, -more, Vec<D>(contact.point - begun(contact.b).x));
   }

@@ -143,7 +143,8 @@ void SpaceIterative::shed_gains() {
   const int n = int(model_.bodies.size());
   const auto passing = [&](const ContactConstraint& touch) -> Vec<D> {
     const BodyMotion<D>& b = touch.b == n ? room : stances_[touch.b];
-    return stances_[touch.a].velocity(touch.arm_a) - b.velocity(touch.arm_b) + touch.belt + slip(touch);
+    return stances_[touch.a].velocity(touch.arm_a) - b.velocity(touch.arm_b) + touch.belt + slip(touch) -
+           touch.drift;
   };
   const auto island = [&](const ContactConstraint& touch) {
     const int a = settling_.island_of[touch.a];
