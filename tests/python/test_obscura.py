@@ -153,16 +153,19 @@ def test_copies_and_pickles_keep_what_was_read(tmp_path):
 
 def test_work_of_other_threads_ends_with_python(tmp_path):
     (tmp_path / "end.py").write_text(f"""
-import obscura, threading, time
+import obscura, threading
 scene = obscura.Scene({str(ROOT / "scenes/room.toml")!r})
 movie = obscura.Movie({str(tmp_path / "open.mp4")!r}, size=(16, 16), fps=10)
+
+at_work = threading.Event()
 
 def work(world=scene.world()):
     while True:
         world.step(10)
+        at_work.set()
 
 threading.Thread(target=work, daemon=True).start()
-time.sleep(0.2)
+at_work.wait()
 """)
     assert subprocess.run([sys.executable, tmp_path / "end.py"], capture_output=True, timeout=60).returncode == 0
     assert sorted(os.listdir(tmp_path)) == ["end.py"]

@@ -340,6 +340,18 @@ bool ExactSolver<D>::solve_laws(std::span<const double> rate) {
   return found;
 }
 
+// b_: how fast each row goes after h, next to its aim there, by accelerations `rate` without forces of rows
+template <int D>
+void ExactSolver<D>::predict_velocities(std::span<const double> rate, double h) {
+  b_.resize(Eigen::Index(rows_.size()));
+  for (int i = 0; i < int(rows_.size()); ++i)
+    b_[i] = row_velocity(i) + h * (row_acceleration(i, rate) + rows_[i].velocity_product);
+  for (const Constraint& constraint : constraints_) {
+    const typename Motors<D>::Aim its = aim(constraint);
+    b_[constraint.first] -= its.speed + h * its.rate;
+  }
+}
+
 // Collects also what separates slower than the resting speed and would be back soon, or from next to nowhere:
 // where the forces of all else close a row again, w < 0, it is held if its velocity v is at most
 // -w (rest_speed / g), or its way v^2 / -2w at most kNowhere of the room. What they do not close, or as

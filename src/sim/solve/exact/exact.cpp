@@ -514,18 +514,6 @@ double ExactSolver<D>::motor_power() const {
   return sum;
 }
 
-// b_: how fast each row goes after h, next to its aim there, by accelerations `rate` without forces of rows
-template <int D>
-void ExactSolver<D>::predict_velocities(std::span<const double> rate, double h) {
-  b_.resize(Eigen::Index(rows_.size()));
-  for (int i = 0; i < int(rows_.size()); ++i)
-    b_[i] = row_velocity(i) + h * (row_acceleration(i, rate) + rows_[i].velocity_product);
-  for (const Constraint& constraint : constraints_) {
-    const typename Motors<D>::Aim its = aim(constraint);
-    b_[constraint.first] -= its.speed + h * its.rate;
-  }
-}
-
 // the rest of a step at once: impulses instead of forces, so that nothing that touches comes closer at its
 // end
 template <int D>

@@ -88,16 +88,13 @@ void Iterative<D>::move_free(StepPart<D> part) {
   joints_.compute_rows();
   velocities_to_joints();
   joints_.keep_row_speeds();
-  for (const int i : joints_.bodies()) lay_down(i, part.h);
-}
-
-// what contacts gave to a body on joints, to be found anew
-template <int D>
-void Iterative<D>::lay_down(int body, double h) {
-  if (borne_.empty() || !moves(body) || !dynamics_.has(body)) return;
-  MovingBody<D>& m = moving_[std::size_t(body)];
-  const Twist<D>& its = borne_[std::size_t(body)];
-  set_velocity(m, velocity(m) - h * its.v, spin(m) - h * its.w);
+  // what contacts gave of these, to be found anew
+  for (const int i : joints_.bodies()) {
+    if (borne_.empty() || !moves(i) || !dynamics_.has(i)) continue;
+    MovingBody<D>& m = moving_[std::size_t(i)];
+    const Twist<D>& its = borne_[std::size_t(i)];
+    set_velocity(m, velocity(m) - part.h * its.v, spin(m) - part.h * its.w);
+  }
 }
 
 template <int D>

@@ -145,7 +145,6 @@ class Iterative : public ContactSolver<D> {
   /// What the forces of bearing_ give to each body, into borne_, for a motion of h s. They are less where the
   /// body is held so stiffly that a wrong force would be answered by one that is as wrong.
   void find_borne(const State<D>& state, double h);
-  void lay_down(int body, double h);
   void add_borne(int body, const Vec<D>& force, const Vec<D>& arm);
   bool wake_near_driven(StepPart<D> step, double span);
   /// How far the i-th kinematic body may be, within h s from t, from where its velocity at t takes it, m.

@@ -245,7 +245,9 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
       double& least = least_[group].n[k][lane];
       g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
       const double middle = in_middle(k);
-      // of what goes on bearing and has hardly changed, how its rows turn until the end
+      // Of what goes on bearing and has hardly changed, how its rows turn until the end. Else what rows have
+      // in excess, but no more than those where the substep begins: of the middle there is only a way not
+      // gone.
       const bool goes_on = !struck && std::fabs(vn) <= kLasting * fast;
       least = !goes_on ? std::min(middle - vn, std::max(v[k] - vn, 0.0)) : v[k] - middle;
       if (goes_on && !(g.p[k][lane] > 0)) least = std::min(least, 0.0);

@@ -21,7 +21,6 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kMostAskew = 0.5;       // the cosine by which a normal turns in half a substep, at most
 constexpr double kDeepest = 2e-3;        // of a body's bounding radius: deeper nothing rests
 constexpr int kMostIterations = 40;      // of few touches
 constexpr int kFewestIterations = 4;     // of many
@@ -311,65 +310,6 @@ void SpaceIterative::set_aims(int begin, int end, const State<D>& state, double 
     if (size > most) touch.tangent_impulse *= most / size;
     known_force_[i] = 1;
   }
-}
-
-// whether a touch goes on bearing, that had this force
-bool SpaceIterative::lasts(const ContactConstraint& touch, const Vec<D>& force) const {
-  if (!(touch.n.dot(force) > 0)) return false;
-  static const BodyMotion<D> room;
-  const bool wall = touch.b == int(model_.bodies.size());
-  const BodyMotion<D>&a = stances_[touch.a], &b = wall ? room : stances_[touch.b];
-  const Vec<D> passes = a.velocity(touch.arm_a) - b.velocity(touch.arm_b);
-  double speed = std::sqrt(passes.squaredNorm()) + bounding_radius_[touch.a] * std::sqrt(a.w.squaredNorm());
-  if (!wall) speed += bounding_radius_[touch.b] * std::sqrt(b.w.squaredNorm());
-  return -touch.n.dot(passes) <= kLasting * speed;
-}
-
-// Whether a blow, that is left to the iterations or has been, changes by much how fast a's matter passes b's:
-// that was `passes`.
-bool SpaceIterative::strikes(const ContactConstraint& touch, const Vec<D>& passes) const {
-  if (!touch.after && !touch.blow) return false;
-  const double much =
-      kStrikes * (swiftness(touch.a) + (touch.b < int(model_.bodies.size()) ? swiftness(touch.b) : 0));
-  if (touch.blow) return -touch.n.dot(passes) > much;
-  return touch.least < -1e8 || (slip(touch) - touch.belt - passes).squaredNorm() > much * much;
-}
-
-// Rows of what lies on or along something are those of the middle of the substep, as the bodies move where it
-// begins: forces act there, on the mean. And speeds along them are to hold at its end: what rows that turn
-// add to them until then is as much as from the beginning to the middle.
-//   n . u' >= -c_n, slip u' + c_t      c = J(h/2) v - J(0) v
-// Otherwise what slides on a thing that turns would push it where it was, and go by its old velocity: what
-// rides on a turntable would go outwards by w^2 h / 2 of its radius a second.
-void SpaceIterative::center(int number, const State<D>& state, double h, bool bears) {
-  ContactConstraint& touch = touches_[std::size_t(number)];
-  const int n = int(model_.bodies.size());
-  const auto middle = [&](int body) {
-    if (body == n) return BodyMotion<D>();
-    BodyMotion<D> at = stances_[std::size_t(body)];
-    if (drives_.number(body) >= 0) {
-      const BodyMotion<D> then = body_motion(state, body);
-      at.v = 0.25 * (3 * at.v + then.v), at.w = 0.25 * (3 * at.w + then.w);
-    } else if (inactive_[std::size_t(body)]) {
-      return at;
-    }
-    if (h * h * at.w.squaredNorm() > kMostTurn * kMostTurn) at.w.setZero();
-    const BodyMotion<D> there = ahead<D>(at, begun_turn(body), 0.5 * h);
-    at.x = there.x, at.room_from_body = there.room_from_body;
-    at.w = stances_[std::size_t(body)].w;
-    return at;
-  };
-  const BodyMotion<D> a = middle(touch.a), b = middle(touch.b);
-  const EvaluatedContact<D> there = evaluate(features_[std::size_t(number)], a, b);
-  if (!(there.normal.dot(touch.n) > kMostAskew)) return;
-  const Vec<D> before = a.velocity(touch.arm_a) - b.velocity(touch.arm_b);
-  const Vec<D> apart = 0.5 * std::max(0.0, there.value) * there.normal;
-  const Vec<D> arm_a = there.point + apart - a.x, arm_b = there.point - apart - b.x;
-  const Vec<D> now = a.velocity(arm_a) - b.velocity(arm_b);
-  touch.drift = now - before - there.normal * there.normal.dot(now - before);
-  const double turns = there.normal.dot(now) - touch.n.dot(before);
-  touch.least -= touch.apart + (bears ? turns : std::max(turns, 0.0));
-  touch.n = there.normal, touch.arm_a = arm_a, touch.arm_b = arm_b;
 }
 
 // Of the blows of a step that are left to the iterations, a body meets the first; what it met after that it

@@ -191,6 +191,8 @@ class SpaceIterative final : public Iterative<3> {
   bool features_change(const ContactConstraint& touch) const;
   void renew_features(int first, double low, double high, double h);
   void begin_flights(const State<D>& state, double h);
+  void lay_down_ends(const State<D>& state, double h);
+  void give_back_ends(const State<D>& state);
   void find_closing(const State<D>& state, double h);
   void find_turned_pairs(double h);
   void restore_features();

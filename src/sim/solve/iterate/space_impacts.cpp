@@ -100,8 +100,8 @@ void SpaceIterative::gather_ends(double t, double h) {
   struck_ends_.limit();
 }
 
-// the rows of what meets at a time, n and across it of each gap, their M^-1 J', K and J v; or the number of one
-// of them that joints leave nothing to move, else negative
+// the rows of what meets at a time, n and across it of each gap, their M^-1 J', K and J v; or the number of
+// one of them that joints leave nothing to move, else negative
 int SpaceIterative::build_impact_rows(double t, double h) {
   const int count = int(meets_.size()), rows = D * count, n = int(model_.bodies.size());
   begin_rows(count);
@@ -219,37 +219,14 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
       if (fast(i)) any = true;
   });
   if (!any) return;
-  // what is struck flies without contacts, also on joints
-  std::vector<Flown>& borne = borne_ends_;
-  borne.clear();
-  for (const int i : joints_.bodies()) {
-    if (!gives(i)) continue;
-    const int k = turning(state, i);
-    Flown& end = borne.emplace_back();
-    end.stance.x = x_free_[std::size_t(i)], end.stance.v = v_free_[std::size_t(i)];
-    if (k >= 0) end.turn = turn_free_[std::size_t(k)], end.stance.w = w_free_[std::size_t(k)];
-    take_out(i, h, x_free_[std::size_t(i)], v_free_[std::size_t(i)],
-             k < 0 ? nullptr : &turn_free_[std::size_t(k)], k < 0 ? nullptr : &w_free_[std::size_t(k)]);
-  }
-  const auto give_back = [&] {
-    auto end = borne.begin();
-    for (const int i : joints_.bodies()) {
-      if (!gives(i)) continue;
-      const int k = turning(state, i);
-      if (when_[i] < 0) {
-        x_free_[std::size_t(i)] = end->stance.x, v_free_[std::size_t(i)] = end->stance.v;
-        if (k >= 0) turn_free_[std::size_t(k)] = end->turn, w_free_[std::size_t(k)] = end->stance.w;
-      }
-      ++end;
-    }
-  };
+  lay_down_ends(state, h);
   begin_flights(state, h);
   find_closing(state, h);
   renewed_.clear();
   rounds_.assign(n + 1, 0), crowded_.assign(n + 1, 0);
   find_turned_pairs(h);
   if (due_.empty()) {
-    restore_features(), give_back();
+    restore_features(), give_back_ends(state);
     return;
   }
 
@@ -295,7 +272,7 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
     }
   }
   restore_features();
-  if (!struck_) return give_back();
+  if (!struck_) return give_back_ends(state);
 
   for (int i = 0; i < int(touches_.size()); ++i) {
     ContactConstraint& touch = touches_[i];
@@ -323,8 +300,38 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
       state.turn[k] = turn_free_[k] = end.turn, state.spin[k] = w_free_[k] = moving_[i].w = end.stance.w;
     }
   }
-  give_back();
+  give_back_ends(state);
   energy_guard_.open(state);
+}
+
+// What is struck flies without contacts, also on joints: what these give is taken out of where the free
+// motion ends.
+void SpaceIterative::lay_down_ends(const State<D>& state, double h) {
+  borne_ends_.clear();
+  for (const int i : joints_.bodies()) {
+    if (!gives(i)) continue;
+    const int k = turning(state, i);
+    Vec<D>&x = x_free_[std::size_t(i)], &v = v_free_[std::size_t(i)];
+    Orientation<D>* const turn = k < 0 ? nullptr : &turn_free_[std::size_t(k)];
+    AngularVec<D>* const spin = k < 0 ? nullptr : &w_free_[std::size_t(k)];
+    Flown& end = borne_ends_.emplace_back();
+    end.stance.x = x, end.stance.v = v;
+    if (turn) end.turn = *turn, end.stance.w = *spin;
+    take_out(i, h, x, v, turn, spin);
+  }
+}
+
+// the same back, to those that nothing has struck
+void SpaceIterative::give_back_ends(const State<D>& state) {
+  auto end = borne_ends_.begin();
+  for (const int i : joints_.bodies()) {
+    if (!gives(i)) continue;
+    const Flown& its = *end++;
+    if (when_[i] >= 0) continue;
+    x_free_[std::size_t(i)] = its.stance.x, v_free_[std::size_t(i)] = its.stance.v;
+    if (const int k = turning(state, i); k >= 0)
+      turn_free_[std::size_t(k)] = its.turn, w_free_[std::size_t(k)] = its.stance.w;
+  }
 }
 
 // where bodies begin, and how fast they may become
