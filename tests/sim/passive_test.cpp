@@ -211,6 +211,16 @@ World<2> tangle<2>(int seed) {
 // energy; the scheme errs by (w h)^5, with w of up to 67 rad/s.
 constexpr double kWhirl = 1.7e-5;
 
+// the energy that two steps of half the length give from there, J
+template <int D>
+double given_by_halves(World<D> world, State<D> state) {
+  world.model.rate.num *= 2, state.step *= 2;
+  Stepper<D> stepper(world.model);
+  const double before = energy(world, state) - state.ledger.displacement;
+  for (int half = 0; half < 2; ++half) EXPECT_FALSE(stepper.step(state));
+  return energy(world, state) - state.ledger.displacement - before;
+}
+
 template <int D>
 void expect_tangles_only_lose() {
   for (int seed = 0; seed < 30; ++seed) {
@@ -223,10 +233,14 @@ void expect_tangles_only_lose() {
     const double all = energy(world, state);
     double before = left();
     for (int step = 1; step < 300; ++step) {
+      const State<D> begun = state;
       const auto trouble = stepper.step(state);
       ASSERT_FALSE(trouble) << "seed " << seed << " at step " << step << ": " << trouble->what;
       const double now = left();
-      ASSERT_LE(now, before + kWhirl * all) << "seed " << seed << " at step " << step;
+      // where a link turns over within few steps it errs by more, and its order tells
+      if (now > before + kWhirl * all) {
+        ASSERT_LE(given_by_halves(world, begun), (now - before) / 8) << "seed " << seed << " at step " << step;
+      }
       before = now;
     }
     for (const Vec<D>& x : state.x) EXPECT_LT(x.cwiseAbs().maxCoeff(), 2.5) << "seed " << seed;

@@ -264,7 +264,7 @@ void EnergyGuard<D>::gather(const State<D>& state) {
     if (!counts(i)) continue;
     Island& it = island(i);
     const double m = weights_[i].mass;
-    it.gain += gain(i), it.kinetic += kinetic(state, i), it.mass += m;
+    it.gain += gain(i), it.kinetic += kinetic(state, i), it.mass += m, ++it.bodies;
     // of so many that fly, the scheme's own error is more than what contacts add
     if (shares_[std::size_t(i)]) it.granted += kShared * 0.5 * m * v_[std::size_t(i)].squaredNorm();
     it.granted += granted_[i] * m * g_ * model_.scale;
@@ -299,12 +299,12 @@ void EnergyGuard<D>::gather(const State<D>& state) {
   for (const Grip<D>& grip : state.grips) {
     if (counts(grip.body)) island(grip.body).driven = true;
   }
-  // slowed before any contact, or by something no longer near; but what falls by Euler's scheme gains by
-  // itself
+  // pushed by something that is no longer near; but what falls by Euler's scheme gains by itself, and so does
+  // what turns alone by all of them
   const bool gains = model_.integrator == Integrator::euler;
   for (Island& it : sums_) {
-    if (it.touched || (it.tied && !it.jointed) || gains) continue;
-    if (it.gain > (it.jointed ? kJointed : kFlight) * it.kinetic) it.touched = it.rooted = true;
+    if (it.touched || (it.tied && !it.jointed) || gains || it.bodies == 1) continue;
+    if (it.gain > (it.jointed ? kJointed : kFlight) * it.kinetic) it.touched = true;
   }
 }
 

@@ -58,6 +58,7 @@ class EnergyGuard {
     double gain = 0, granted = 0, kinetic = 0, mass = 0,
            height = 0;                                          // J, J, J, kg; J of new height of what rose
     Vec<D> momentum = Vec<D>::Zero(), middle = Vec<D>::Zero();  // kg m/s; kg m
+    int bodies = 0;
     bool touched = false, rooted = false, chained = false, driven = false;
     bool tied = false, jointed = false;  // by springs; by joints
     bool held = false;                   // by any joint

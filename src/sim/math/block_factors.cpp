@@ -56,6 +56,7 @@ void Blocks<M>::plan(const std::vector<int>& sizes, const std::vector<std::pair<
   first_.resize(n), rows_ = 0;
   for (int i = 0; i < n; ++i) first_[i] = rows_, rows_ += sizes[i];
   diagonal_.assign(n, {}), inverse_.assign(n, {}), entries_.assign(pairs.size(), {});
+  implied_.assign(n, 0);
 
   // components, each told by its lowest block
   Islands components;
@@ -114,7 +115,17 @@ void Blocks<M>::plan(const std::vector<int>& sizes, const std::vector<std::pair<
     const bool turned = place[i] < place[j];
     sources_.push_back({e, turned ? slot(j, i) : slot(i, j), turned});
   }
+  const auto component_of = [&](const Source& source) { return component_[pairs[source.pair].first]; };
+  std::stable_sort(sources_.begin(), sources_.end(),
+                   [&](const Source& a, const Source& b) { return component_of(a) < component_of(b); });
+  first_source_.clear(), first_update_.clear();
+  int source = 0;
+  for (int k = 0; k <= this->components(); ++k) {
+    while (source < int(sources_.size()) && component_of(sources_[source]) < k) ++source;
+    first_source_.push_back(source);
+  }
   for (int p = 0; p < n; ++p) {
+    if (p == components_[first_update_.size()]) first_update_.push_back(int(updates_.size()));
     for (int e = begin_[p]; e < begin_[p + 1]; ++e) {
       for (int f = begin_[p]; f <= e; ++f)
         updates_.push_back(f == e ? -1 - below_[e].block : slot(below_[e].block, below_[f].block));
@@ -123,27 +134,29 @@ void Blocks<M>::plan(const std::vector<int>& sizes, const std::vector<std::pair<
 }
 
 template <int M>
-void Blocks<M>::factorise() {
-  implied_.assign(components(), 0);
-  if (eliminate()) eliminate();
+void Blocks<M>::factorise(int component) {
+  implied_[component] = 0;
+  if (eliminate(component)) eliminate(component);
 }
 
 // L and D; true where rows turned out to be implied by others
 template <int M>
-bool Blocks<M>::eliminate() {
+bool Blocks<M>::eliminate(int component) {
   bool found = false;
-  for (Below& below : below_) below.l = {};
-  for (const Source& source : sources_) {
+  const int first = components_[component], last = components_[component + 1];
+  for (int e = begin_[first]; e < begin_[last]; ++e) below_[e].l = {};
+  for (int s = first_source_[component]; s < first_source_[component + 1]; ++s) {
+    const Source& source = sources_[s];
     const Block& from = entries_[source.pair];
     Block& to = below_[source.below].l;
     for (int i = 0; i < M; ++i) {
       for (int j = 0; j < M; ++j) to[i * M + j] = source.turned ? from[j * M + i] : from[i * M + j];
     }
   }
-  std::size_t update = 0;
+  auto update = std::size_t(first_update_[component]);
   std::vector<Block>& d = inverse_;  // the diagonal first, then its inverse
-  std::copy(diagonal_.begin(), diagonal_.end(), d.begin());
-  for (int p = 0; p < int(order_.size()); ++p) {
+  for (int p = first; p < last; ++p) d[order_[p]] = diagonal_[order_[p]];
+  for (int p = first; p < last; ++p) {
     const int k = order_[p], n = sizes_[k];
     double own[M], most = 0;
     for (int i = 0; i < n; ++i) own[i] = diagonal_[k][i * M + i], most = std::max(most, own[i]);
@@ -151,7 +164,7 @@ bool Blocks<M>::eliminate() {
     for (int i = 0; i < n; ++i)
       if (!(own[i] > 0)) own[i] = most;
     const Block pivot = d[k];
-    char& implied = implied_[component_[k]];
+    char& implied = implied_[component];
     const double least = invert<M>(pivot, n, own, implied ? kStiff : kSlight, d[k]);
     if (!implied && least < kImplied) implied = 1, found = true;
     for (int e = begin_[p]; e < begin_[p + 1]; ++e) {

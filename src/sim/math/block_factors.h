@@ -34,16 +34,23 @@ class Blocks {
   Block& diagonal(int block) { return diagonal_[block]; }
   Block& entry(int e) { return entries_[e]; }
 
-  /// Factorises A. Redundant rows, as of a door on two hinges, are recognised by their pivots; a component
-  /// that has them is solved nearly in the least-norm sense, with an error that moves nothing.
-  void factorise();
+  /// act(e) for each pair of a component.
+  template <class Act>
+  void each_pair(int component, Act&& act) const {
+    for (int s = first_source_[component]; s < first_source_[component + 1]; ++s) act(sources_[s].pair);
+  }
+
+  /// Factorises A, for the rows of one component. Redundant rows, as of a door on two hinges, are recognised
+  /// by their pivots; a component that has them is solved nearly in the least-norm sense, with an error that
+  /// moves nothing.
+  void factorise(int component);
 
   /// x := A^-1 x, for the rows of one component only.
   void solve(double* x) const;
   void solve(double* x, int component) const;
 
  private:
-  bool eliminate();
+  bool eliminate(int component);
   void substitute(double* x, int component) const;
   void take_product(const double* x, double* y, int component) const;
 
@@ -64,8 +71,10 @@ class Blocks {
   std::vector<Block> diagonal_, entries_, inverse_;
   std::vector<int> begin_;  // of below_, by place
   std::vector<Below> below_;
-  std::vector<Source> sources_;
-  std::vector<int> updates_;  // below_ that each product goes to, or -1 - block
+  std::vector<Source> sources_;    // by component
+  std::vector<int> first_source_;  // of each component
+  std::vector<int> updates_;       // below_ that each product goes to, or -1 - block
+  std::vector<int> first_update_;  // of each component
 };
 
 }  // namespace obscura::sim

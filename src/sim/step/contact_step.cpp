@@ -94,10 +94,9 @@ void ContactStep<D>::step(State<D>& state, double t, double h) {
   let_touch(state);
   // contacts that separate within the step are not reported after it
   touched_.clear();
-  for (const Contact<D>& contact : state.contacts) {
-    if (!exact_) break;
-    touched_.emplace_back(contact.key.a, contact.key.b);
-  }
+  for (const Contact<D>& contact : state.contacts)
+    if (exact_ || contact.touching != ContactMode::open)
+      touched_.emplace_back(contact.key.a, contact.key.b);
   energy_guard_.open(state, t);
   if (lone_bodies_) lone_bodies_->find(state, t, h);
 

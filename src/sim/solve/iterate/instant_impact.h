@@ -18,8 +18,6 @@ class InstantImpact {
  public:
   /// The most contacts of one impact, and the most ends.
   static constexpr int kMost = 8, kMostEnds = 16;
-  /// Where joints leave a push less than this of what it moves without them, it moves nothing.
-  static constexpr double kLockedPush = 1e-9;
 
   // with room for the most, so that no size allocates
   static constexpr int kMostRows = D * kMost + kMostEnds;

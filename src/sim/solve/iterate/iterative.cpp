@@ -32,6 +32,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
     : model_(model),
       dynamics_(model, paths),
       joints_(model),
+      struck_joints_(model),
       drives_(model),
       sleep_(model, Sleep<D>::Forces::iterated, deepest),
       warm_start_(model),

@@ -167,10 +167,25 @@ class Iterative : public ContactSolver<D> {
   void velocities_from_joints(std::span<const int> of);
   void velocities_from_joints() { velocities_from_joints(joints_.bodies()); }
   void solve_joint_velocities();
+  // Before impacts and after them: given(body) is what they have given to one on joints.
+  void begin_struck_joints(const State<D>& state) {
+    if (joints_.empty()) return;
+    struck_joints_.gather(state), struck_joints_.forget_places();
+  }
+  template <class Given>
+  void end_struck_joints(Given&& given) {
+    if (joints_.empty()) return;
+    for (const int i : joints_.bodies()) {
+      const Twist<D> its = given(i);
+      joints_.body_motion(i).v = its.v, joints_.body_motion(i).w = its.w;
+    }
+    joints_.keep_struck_speeds(struck_joints_);
+  }
 
   const Model<D>& model_;
   ForwardDynamics<D> dynamics_;
   JointSolver<D> joints_;
+  JointSolver<D> struck_joints_;  // where impacts find them
   Drives<D> drives_;
   Sleep<D> sleep_;
   WarmStart<D> warm_start_;

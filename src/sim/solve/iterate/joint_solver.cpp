@@ -137,7 +137,8 @@ void JointSolver<D>::plan() {
   rows_.resize(factors_.rows()), old_rows_.resize(factors_.rows());
   for (auto* numbers : {&impulses_, &totals_, &rhs_, &shifts_}) numbers->resize(factors_.rows());
   targets_.assign(std::size_t(factors_.rows()), 0.0);
-  acting_.assign(held_.size(), {});
+  acting_.assign(held_.size(), {}), has_bounded_row_.assign(held_.size(), 0);
+  for (const int block : bounded_blocks_) has_bounded_row_[std::size_t(block)] = 1;
   loose_.assign(std::size_t(factors_.rows()), 0);
   loosen_all();
   end_loads_.assign(held_.size(), {});
@@ -184,20 +185,31 @@ void JointSolver<D>::shift(const Row<D>& row, double by) {
 // rows at the present poses, and their factors
 template <int D>
 void JointSolver<D>::compute_rows() {
+  drive_works_.assign(driven_ ? rows_.size() : 0, 0);
+  for (int component = 0; component < components(); ++component) compute_rows(component);
+}
+
+template <int D>
+void JointSolver<D>::compute_rows(int component) {
   double off[kMostHeld<D>];
-  for (int k = 0; k < int(held_.size()); ++k) {
+  const auto each_block = [&](auto&& act) {
+    for (int place = factors_.begin(component); place < factors_.end(component); ++place)
+      act(factors_.at(place));
+  };
+  drive_works_.resize(driven_ ? rows_.size() : 0);
+  each_block([&](int k) {
     const Joint<D>& joint = model_.joints[held_[k]];
     if (!one_sided(joint))
       rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), &rows_[factors_.first(k)], off,
            at_);
-  }
-  for (const int k : bounded_blocks_) {
-    Row<D>& row = rows_[std::size_t(bounded_row(k))];
-    row = {};
-    if (!loose_[std::size_t(bounded_row(k))]) bounded_row(k, acting_[std::size_t(k)].load, row);
-  }
-  drive_works_.assign(driven_ ? rows_.size() : 0, 0);
-  for (std::size_t r = 0; r < drive_works_.size(); ++r) drive_works_[r] = given(rows_[r]);
+    if (has_bounded_row_[std::size_t(k)]) {
+      Row<D>& row = rows_[std::size_t(bounded_row(k))];
+      row = {};
+      if (!loose_[std::size_t(bounded_row(k))]) bounded_row(k, acting_[std::size_t(k)].load, row);
+    }
+    for (int r = factors_.first(k); driven_ && r < factors_.first(k) + factors_.size(k); ++r)
+      drive_works_[std::size_t(r)] = given(rows_[std::size_t(r)]);
+  });
   constexpr int kMost = kMostHeld<D>;
   const auto fill = [&](auto& block, int i, int j) {
     for (int r = 0; r < factors_.size(i); ++r) {
@@ -206,19 +218,17 @@ void JointSolver<D>::compute_rows() {
             response_.coupling(rows_[factors_.first(i) + r], rows_[factors_.first(j) + c], at_);
     }
   };
-  for (int k = 0; k < int(held_.size()); ++k) {
+  each_block([&](int k) {
     fill(factors_.diagonal(k), k, k);
-  }
-  // what is loose stands alone, with a pivot like the others
-  for (const int k : bounded_blocks_) {
-    if (!loose_[std::size_t(bounded_row(k))]) continue;
+    // what is loose stands alone, with a pivot like the others
+    if (!has_bounded_row_[std::size_t(k)] || !loose_[std::size_t(bounded_row(k))]) return;
     const int last = factors_.size(k) - 1;
     double pivot = last == 0 ? 1 : 0;
     for (int r = 0; r < last; ++r) pivot = std::max(pivot, factors_.diagonal(k)[r * kMost + r]);
     factors_.diagonal(k)[last * kMost + last] = pivot;
-  }
-  for (int e = 0; e < int(pairs_.size()); ++e) fill(factors_.entry(e), pairs_[e].first, pairs_[e].second);
-  factors_.factorise();
+  });
+  factors_.each_pair(component, [&](int e) { fill(factors_.entry(e), pairs_[e].first, pairs_[e].second); });
+  factors_.factorise(component);
 }
 
 // minus the part of the row's speed that bodies have which are moved
@@ -403,7 +413,7 @@ std::span<const typename JointSolver<D>::JointResponse> JointSolver<D>::reached_
 template <int D>
 void JointSolver<D>::find_reached_ends(int component) {
   ReachedEnds& its = reached_[std::size_t(component)];
-  its.known = true, its.count = 0;
+  its.known = true, its.count = 0, its.which.clear();
   for (const int block : with_ends_[std::size_t(component)]) {
     const int number = held_[std::size_t(block)];
     const Joint<D>& joint = model_.joints[std::size_t(number)];
@@ -417,8 +427,22 @@ void JointSolver<D>::find_reached_ends(int component) {
       JointResponse& end = its.ends[std::size_t(its.count)];
       bounded_row(block, load, end.row);
       compute_response(end);
-      its.count += effective_mass(end) > 0;
+      if (!(effective_mass(end) > 0)) continue;
+      ++its.count, its.which.emplace_back(block, load);
     }
+  }
+}
+
+// the ends that another solver has reached, where bodies stand here
+template <int D>
+void JointSolver<D>::take_ends(const JointSolver& begun, int component, int count) {
+  ReachedEnds& its = reached_[std::size_t(component)];
+  its.known = true, its.count = count;
+  if (int(its.ends.size()) < count) its.ends.resize(std::size_t(count));
+  for (int i = 0; i < count; ++i) {
+    const auto& [block, load] = begun.reached_[std::size_t(component)].which[std::size_t(i)];
+    bounded_row(block, load, its.ends[std::size_t(i)].row);
+    compute_response(its.ends[std::size_t(i)]);
   }
 }
 

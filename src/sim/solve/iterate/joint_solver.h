@@ -64,6 +64,30 @@ class JointSolver final : public System {
 
   /// Computes the rows at the present poses.
   void compute_rows();
+  /// For impacts within a substep, of a solver of its own: the rows of a component, and of the ends that
+  /// `begun` has for it, where its bodies stand `time` s after the substep began. place(body, pose, turn)
+  /// writes where one stands then; it comes with what `begun` has of it. After forget_places() where the
+  /// substep is another.
+  template <class Place>
+  void compute_rows_at(double time, JointSolver& begun, int component, Place&& place) {
+    const std::span<const JointResponse> ends = begun.reached_ends(component);
+    if (placed_at_[std::size_t(component)] == time) return;
+    placed_at_[std::size_t(component)] = time;
+    const auto put = [&](int body) {
+      at_[body] = begun.at_[body], turn_[body] = begun.turn_[body];
+      place(body, at_[body], turn_[body]);
+    };
+    for (const int body : members(component)) put(body);
+    if (driven_)
+      for (const int body : bodies_)
+        if (model_.bodies[std::size_t(body)].driven) put(body);
+    compute_rows(component);
+    take_ends(begun, component, int(ends.size()));
+  }
+  void forget_places() { placed_at_.assign(std::size_t(components()), -1.0); }
+  /// What impacts have given bodies, the velocities of body_motion(), belongs to what iterations keep; of the
+  /// components that `struck` has been asked for. After keep_row_speeds().
+  void keep_struck_speeds(const JointSolver& struck);
   /// From here on iterations keep J v as it is at the present velocities, those of the free motion; or at
   /// zero.
   void keep_row_speeds();
@@ -117,10 +141,16 @@ class JointSolver final : public System {
     for (int s = 0; s < 2; ++s)
       response.answer[s].reserve(rows_.size()), response.affected[s].reserve(rows_.size());
   }
-  /// Computes the reaction to response.row. After compute_rows().
+  /// Computes the reaction to response.row. After compute_rows(), of the component of its bodies.
   void compute_response(JointResponse& response);
   /// The speed along the row of p by a unit of impulse along that of q, with the joints' reaction, 1/kg.
   double response_between(const JointResponse& p, const JointResponse& q) const;
+  /// Whether joints leave the row of a response nothing to move where the substep begins, so that no push
+  /// along it does anything. The row is to be that of then, too: of two times, what is rigid yields a little.
+  bool locks(JointResponse& response) {
+    compute_response(response);
+    return effective_mass(response) == 0;
+  }
   /// act(body, change of its velocity, of its spin) for an impulse along the row and the joints' reactions.
   template <class Act>
   void each_push(const JointResponse& response, double impulse, Act&& act) const {
@@ -220,7 +250,9 @@ class JointSolver final : public System {
   };
 
   void plan();
+  void compute_rows(int component);
   void find_reached_ends(int component);
+  void take_ends(const JointSolver& begun, int component, int count);
   JointTurn<D> turn_between(const Joint<D>& joint) const;
   // whether a joint holds anything that moves by forces
   bool moves(const Joint<D>& joint) const {
@@ -350,15 +382,18 @@ class JointSolver final : public System {
   std::vector<char> broken_, frozen_;  // of the state, when plan() ran
   std::vector<Wound> wound_;           // as State::wound
   bool planned_ = false;
-  std::vector<int> held_;            // joints: the blocks. A row that is loose is empty
-  std::vector<char> loose_;          // one a row: of ropes, limits, motors; all but in the free motion
-  std::vector<int> bounded_blocks_;  // whose last row is of a rope, a limit or a motor
+  std::vector<int> held_;              // joints: the blocks. A row that is loose is empty
+  std::vector<char> loose_;            // one a row: of ropes, limits, motors; all but in the free motion
+  std::vector<int> bounded_blocks_;    // whose last row is of a rope, a limit or a motor
+  std::vector<char> has_bounded_row_;  // of blocks: whether they are among these
   struct ReachedEnds {
     bool known = false;  // in this substep
     int count = 0;
-    std::vector<JointResponse> ends;  // the first `count` are in use
+    std::vector<JointResponse> ends;          // the first `count` are in use
+    std::vector<std::pair<int, Load>> which;  // of each its block, and as what it holds
   };
   std::vector<ReachedEnds> reached_;         // of components
+  std::vector<double> placed_at_;            // s, of components: when their rows are of; or negative
   std::vector<std::vector<int>> with_ends_;  // blocks with ropes or limits, of components
   std::vector<char> floating_;               // components: whether nothing holds them to what does not move
   bool may_break_ = false;

@@ -252,9 +252,14 @@ void PlaneIterative::moderate_warm_start() {
 }
 
 void PlaneIterative::resolve_impacts(StepPart<D> part) {
-  const int endless =
-      impacts_.run(fast_, pairs_.all(), batches_, poses_, middle_, old_, dv_, moving_, constants_, joints_);
+  begin_struck_joints(part.state);
+  const int endless = impacts_.run(fast_, pairs_.all(), batches_, poses_, middle_, old_, dv_, moving_,
+                                   constants_, joints_, struck_joints_);
   if (endless >= 0) end_of_impacts(model_.bodies[endless].name, part.t, part.h);
+  end_struck_joints([&](int body) {
+    const Motion given = impacts_.given(body);
+    return Twist<D>{spin(given), velocity(given)};
+  });
   if (!part.state.work.empty()) part.state.work[0] += impacts_.drive_work();
   constants_.least = impacts_.least();
 }

@@ -28,16 +28,23 @@ void Impacts::move(int body, double when, const Step& step, Pose& pose, Motion& 
   const bool there = when_[body] == when;
   pose = there ? pose_[body] : step.poses[body], v = now_[body];
   if (there) return;
-  const Motion& gain = step.dv[body];
-  const double time = when - std::max(0.0, when_[body]), share = time / step.pace.h, half = 0.5 * share;
-  double x = time * (v.x + half * gain.x), y = time * (v.y + half * gain.y), w = time * (v.w + half * gain.w);
-  if (when_[body] >= 0) x += way_[body].x, y += way_[body].y, w += way_[body].w;
+  const Motion way = way_at(body, when, step), &gain = step.dv[body];
+  const double share = (when - std::max(0.0, when_[body])) / step.pace.h;
   v.x += share * gain.x, v.y += share * gain.y, v.w += share * gain.w;
-  pose.x += x, pose.y += y;
-  if (w == 0) return;
-  const SinCos turn = sin_cos(w);
+  pose.x += way.x, pose.y += way.y;
+  if (way.w == 0) return;
+  const SinCos turn = sin_cos(way.w);
   const double c = pose.c;
   pose.c = c * turn.cos - pose.s * turn.sin, pose.s = pose.s * turn.cos + c * turn.sin;
+}
+
+// from where the step begins
+Motion Impacts::way_at(int body, double when, const Step& step) const {
+  const Motion &v = now_[body], &gain = step.dv[body];
+  const double time = when - std::max(0.0, when_[body]), half = 0.5 * (time / step.pace.h);
+  Motion way{time * (v.x + half * gain.x), time * (v.y + half * gain.y), time * (v.w + half * gain.w)};
+  if (when_[body] >= 0) way.x += way_[body].x, way.y += way_[body].y, way.w += way_[body].w;
+  return way;
 }
 
 // a pair at a time

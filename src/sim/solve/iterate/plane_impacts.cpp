@@ -83,20 +83,56 @@ void Impacts::reach(int body, double when, const Step& step) {
 }
 
 // whether one of a pair hangs on joints: what hangs there with it meets the impact too
-bool Impacts::reach_component(const Pair& pair, double when, const Step& step, const JointSolver<2>& joints) {
+bool Impacts::reach_component(const Pair& pair, double when, const Step& step) {
   bool tied = false;
   for (const int body : {pair.a, pair.b}) {
-    const int component = body < 0 ? -1 : joints.component(body);
+    const int component = body < 0 ? -1 : step.joints.component(body);
     if (component < 0) continue;
     tied = true;
-    for (const int member : joints.members(component)) reach(member, when, step);
+    for (const int member : step.joints.members(component)) reach(member, when, step);
   }
   return tied;
 }
 
+// where an impact finds the joints of its bodies
+void Impacts::place_joints(const Pair& pair, double when, const Step& step) {
+  for (const int side : {pair.a, pair.b}) {
+    const int component = side < 0 ? -1 : step.joints.component(side);
+    if (component < 0) continue;
+    step.struck_joints.compute_rows_at(when, step.joints, component,
+                                       [&](int body, BodyMotion<2>& at, Orientation<2>& turn) {
+                                         Pose pose;
+                                         Motion ignored;
+                                         move(body, when, step, pose, ignored);
+                                         at.x = {pose.x, pose.y};
+                                         at.room_from_body << pose.c, -pose.s, pose.s, pose.c;
+                                         turn[0] += way_at(body, when, step).w;
+                                       });
+  }
+}
+
+// whether joints leave a touch of an impact nothing to move
+bool Impacts::locked(const Impact& impact, int k, const std::vector<ContactBatch>& batches,
+                     const Step& step) {
+  const Pair& pair = step.pairs[impact.pair];
+  const ContactBatch& g = batches[pair.slot / kLanes];
+  int words[2];
+  if (impact.renewed) {
+    features_at(pair, impact.when, step, words);
+    copy_lane(g, pair.slot % kLanes, fresh_, pair.slot % kLanes);
+  }
+  const PlacedPair begun =
+      impact.renewed ? placed_renewed(pair, words, 0, step) : placed_at(pair, 0, g, step);
+  const TouchRow& r = begun.rows[k];
+  Row<2>& row = responses_[0][k].row;
+  row.a = pair.a, row.b = pair.b, row.along = {r.nx, r.ny};
+  row.angular_a[0] = r.na, row.angular_b[0] = r.nb;
+  return step.joints.locks(responses_[0][k]);
+}
+
 // what joints answer to pushes of those touches that close
 void Impacts::compute_responses(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2],
-                                JointSolver<2>& joints) {
+                                const Step& step) {
   for (int across = 0; across < 2; ++across) {
     for (int k = 0; k < 2; ++k) {
       if (!closes[k]) continue;
@@ -104,7 +140,7 @@ void Impacts::compute_responses(const Pair& pair, const Push (&pushes)[2][2], co
       Row<2>& row = responses_[across][k].row;
       row.a = pair.a, row.b = pair.b;
       row.along = {push.x, push.y}, row.angular_a[0] = push.a, row.angular_b[0] = push.b;
-      joints.compute_response(responses_[across][k]);
+      step.struck_joints.compute_response(responses_[across][k]);
     }
   }
 }
@@ -138,8 +174,7 @@ bool Impacts::predict(int i, Impact& impact, const std::vector<ContactBatch>& ba
 }
 
 // one pair, both touches together; false where joints leave it nothing to move
-bool Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, const Step& step,
-                      JointSolver<2>& joints) {
+bool Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, const Step& step) {
   const Pair& pair = step.pairs[impact.pair];
   const int a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
   const int group = pair.slot / kLanes, lane = pair.slot % kLanes;
@@ -147,15 +182,14 @@ bool Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
   reach(a, impact.when, step), reach(b, impact.when, step);
   bool closes[2] = {impact.met[0], impact.met[1]};
   const auto& pushes = impact.pushes;
-  const bool tied = !joints.empty() && reach_component(pair, impact.when, step, joints);
+  JointSolver<2>& joints = step.struck_joints;
+  const bool tied = !joints.empty() && reach_component(pair, impact.when, step);
   const double ima = now_[a].im, imb = now_[b].im, iia = g.iia[lane], iib = g.iib[lane];
   if (tied) {
-    compute_responses(pair, pushes, closes, joints);
-    // joints may leave it nothing to move
-    for (int k = 0; k < 2; ++k)
-      closes[k] = closes[k] && joints.response_between(responses_[0][k], responses_[0][k]) >
-                                   InstantImpact<2>::kLockedPush * (ima + imb);
+    for (int k = 0; k < 2; ++k) closes[k] = closes[k] && !locked(impact, k, batches, step);
     if (!closes[0] && !closes[1]) return false;
+    place_joints(pair, impact.when, step);
+    compute_responses(pair, pushes, closes, step);
   }
 
   const Motion va = motion_at(a, impact.when, step), vb = motion_at(b, impact.when, step);
@@ -274,14 +308,14 @@ bool Impacts::strikes(int a, int b, const Motion& va, const Motion& vb, const St
 }
 
 // notes it, and looks anew at all that it moves
-void Impacts::had_impact(const Impact& impact, const Step& step, JointSolver<2>& joints) {
+void Impacts::had_impact(const Impact& impact, const Step& step) {
   const Pair& pair = step.pairs[impact.pair];
   impacts_.push_back(impact);
   // what only passes a blow on may still have one of its own
   if (impact.speed > pair.impact_speed) impacts_of_[impact.pair] = 1;
   for (const int side : {pair.a, pair.b}) {
     if (side < 0 || now_[side].im == 0) continue;
-    joints.each_tied(side, [&](int body) {
+    step.joints.each_tied(side, [&](int body) {
       ++rounds_[body];
       for (const int next : around(body)) look_at(next);
     });
@@ -291,7 +325,7 @@ void Impacts::had_impact(const Impact& impact, const Step& step, JointSolver<2>&
 int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
                  const std::vector<Pose>& poses, const std::vector<Pose>& middle,
                  const std::vector<Motion>& old, const std::vector<Motion>& dv, std::vector<Motion>& v,
-                 const StepConstants& pace, JointSolver<2>& joints) {
+                 const StepConstants& pace, JointSolver<2>& joints, JointSolver<2>& struck_joints) {
   for (const int body : bodies_) when_[body] = first_[body] = -1, rounds_[body] = 0;
   for (const int body : crowd_) crowded_[body] = 0;
   crowd_.clear(), instants_ = 0;
@@ -304,7 +338,7 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
   std::copy(old.begin(), old.end(), now_.begin());
   known_.assign(batches.size(), -1);
 
-  const Step step{pairs, poses, middle, old, dv, pace};
+  const Step step{pairs, poses, middle, old, dv, pace, joints, struck_joints};
   for (const int lane : found) look_at(batches[lane / kLanes].pair[lane % kLanes]);
   // which lane a pair has hangs on the steps before; the order of pairs does not
   std::sort(queue_.begin(), queue_.end());
@@ -335,13 +369,13 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
       return pair.a;
     }
     if (at == queue_.size()) queue_.clear(), at = 0;
-    if (resolve_instant(impact, batches, step, joints)) {
+    if (resolve_instant(impact, batches, step)) {
       for (const Meeting& meeting : meetings_) {
-        if (meeting.moved) had_impact(meeting.impact, step, joints);
+        if (meeting.moved) had_impact(meeting.impact, step);
       }
       continue;
     }
-    if (resolve(impact, batches, step, joints)) had_impact(impact, step, joints);
+    if (resolve(impact, batches, step)) had_impact(impact, step);
   }
 
   for (const int body : bodies_) {

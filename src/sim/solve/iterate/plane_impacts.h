@@ -28,13 +28,13 @@ class Impacts {
   void list_pairs(const std::vector<Pair>& pairs, const std::vector<Motion>& v);
 
   /// Resolves the impacts of the lanes in `found` and all that follow from them. `old`: velocities at the
-  /// start; dv: what the substep adds to them without contacts. Adds the change by impacts to v, marks lanes
-  /// as struck, and sets least() for them. Returns a body whose impacts do not end
-  /// (sim/solve/iterate/endless_impacts.h), or -1.
+  /// start; dv: what the substep adds to them without contacts; struck_joints: a solver for where impacts
+  /// find the joints. Adds the change by impacts to v, marks lanes as struck, and sets least() for them.
+  /// Returns a body whose impacts do not end (sim/solve/iterate/endless_impacts.h), or -1.
   int run(const LaneList& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
           const std::vector<Pose>& poses, const std::vector<Pose>& middle, const std::vector<Motion>& old,
           const std::vector<Motion>& dv, std::vector<Motion>& v, const StepConstants& pace,
-          JointSolver<2>& joints);
+          JointSolver<2>& joints, JointSolver<2>& struck_joints);
 
   /// The work of kinematic bodies and belts by the impacts of the last run, J.
   double drive_work() const { return drive_work_; }
@@ -59,6 +59,8 @@ class Impacts {
   double last(int body) const { return when_[body]; }
   const Motion& way(int body) const { return way_[body]; }
   const Motion& after(int body) const { return now_[body]; }
+  /// What its impacts have given to a body.
+  Motion given(int body) const { return when_[body] < 0 ? Motion() : dv_impacts_[body]; }
 
  private:
   struct Struck {
@@ -101,8 +103,11 @@ class Impacts {
     const std::vector<Pose>&poses, &middle;
     const std::vector<Motion>&old, &dv;
     const StepConstants& pace;
+    JointSolver<2>&joints, &struck_joints;
   };
   void reach(int body, double when, const Step& step);
+  Motion way_at(int body, double when, const Step& step) const;
+  void place_joints(const Pair& pair, double when, const Step& step);
   void move(int body, double when, const Step& step, Pose& pose, Motion& v) const;
   PlacedPair placed_at(const Pair& pair, double when, const ContactBatch& batches, const Step& step) const;
   double closing_guess(const Pair& pair, int k, const ContactBatch& batches, const PlacedPair& at,
@@ -123,25 +128,23 @@ class Impacts {
   int rounds(const Pair& pair) const { return rounds_[pair.a] + (pair.b < 0 ? 0 : rounds_[pair.b]); }
   void look_at(int pair);
   bool predict(int pair, Impact& impact, const std::vector<ContactBatch>& batches, const Step& step);
-  bool resolve(Impact& impact, const std::vector<ContactBatch>& batches, const Step& step,
-               JointSolver<2>& joints);
-  bool reach_component(const Pair& pair, double when, const Step& step, const JointSolver<2>& joints);
+  bool resolve(Impact& impact, const std::vector<ContactBatch>& batches, const Step& step);
+  bool reach_component(const Pair& pair, double when, const Step& step);
   std::pair<double, double> place_at(int body, double when, const Step& step) const;
   bool meets_at(const Pair& pair, double when, const ContactBatch& batches, const Step& step,
                 Meeting& meeting);
-  bool gather_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step,
-                      const JointSolver<2>& joints);
+  bool gather_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step);
   void take_alone(const Impact& first);
-  void gather_ends(double when, const Step& step, JointSolver<2>& joints);
-  bool resolve_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step,
-                       JointSolver<2>& joints);
-  void had_impact(const Impact& impact, const Step& step, JointSolver<2>& joints);
+  void gather_ends(double when, const Step& step);
+  bool resolve_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step);
+  void had_impact(const Impact& impact, const Step& step);
   void give(int body, double x, double y, double w) {
     now_[body].x += x, now_[body].y += y, now_[body].w += w;
     dv_impacts_[body].x += x, dv_impacts_[body].y += y, dv_impacts_[body].w += w;
   }
+  bool locked(const Impact& impact, int touch, const std::vector<ContactBatch>& batches, const Step& step);
   void compute_responses(const Pair& pair, const Push (&pushes)[2][2], const bool (&closes)[2],
-                         JointSolver<2>& joints);
+                         const Step& step);
   static double speed(const Push& push, const Motion& a, const Motion& b) {
     return push.x * (a.x - b.x) + push.y * (a.y - b.y) + (push.a * a.w - push.b * b.w);
   }

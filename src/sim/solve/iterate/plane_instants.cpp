@@ -26,12 +26,8 @@ struct StruckSide {
 // where a body's centre is at a time
 std::pair<double, double> Impacts::place_at(int body, double when, const Step& step) const {
   if (when_[body] == when) return {pose_[body].x, pose_[body].y};
-  const Motion &v = now_[body], &gain = step.dv[body];
-  const double time = when - std::max(0.0, when_[body]), half = 0.5 * time / step.pace.h;
-  double x = step.poses[body].x + time * (v.x + half * gain.x),
-         y = step.poses[body].y + time * (v.y + half * gain.y);
-  if (when_[body] >= 0) x += way_[body].x, y += way_[body].y;
-  return {x, y};
+  const Motion way = way_at(body, when, step);
+  return {step.poses[body].x + way.x, step.poses[body].y + way.y};
 }
 
 // Whether a pair touches at a time, by the features that are nearest then: how, into `meeting`.
@@ -60,8 +56,8 @@ bool Impacts::meets_at(const Pair& pair, double when, const ContactBatch& g, con
 
 // What hangs together with an impact through touches that are closed then, into meetings_ and closed_. False
 // where that is more than few.
-bool Impacts::gather_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step,
-                             const JointSolver<2>& joints) {
+bool Impacts::gather_instant(const Impact& first, const std::vector<ContactBatch>& batches,
+                             const Step& step) {
   meetings_.assign(1, {first, {}, {}, false}), closed_.clear();
   bool few = true;
   const auto list = [&](int number) {
@@ -74,7 +70,7 @@ bool Impacts::gather_instant(const Impact& first, const std::vector<ContactBatch
     const Pair& pair = step.pairs[meetings_[m].impact.pair];
     for (const int side : {pair.a, pair.b}) {
       if (side < 0 || now_[side].im == 0) continue;
-      joints.each_tied(side, [&](int body) {
+      step.joints.each_tied(side, [&](int body) {
         const auto [x, y] = place_at(body, first.when, step);
         const auto near = [&](const Pair& pair_of_it) {
           if (pair_of_it.b < 0) return true;
@@ -110,14 +106,16 @@ void Impacts::take_alone(const Impact& first) {
 }
 
 // the ends of joints that are reached by what meets, into ends_
-void Impacts::gather_ends(double when, const Step& step, JointSolver<2>& joints) {
+void Impacts::gather_ends(double when, const Step& step) {
   ends_.clear();
-  if (joints.empty()) return;
+  if (step.joints.empty()) return;
   for (const Meeting& meeting : meetings_) {
     const Pair& pair = step.pairs[meeting.impact.pair];
+    place_joints(pair, when, step);
     for (const int body : {pair.a, pair.b}) {
       if (body < 0) continue;
-      ends_.add(joints, body, 1 - when / step.pace.h, [&](int member, Vec<2>& v, AngularVec<2>& w) {
+      const double left = 1 - when / step.pace.h;
+      ends_.add(step.joints, step.struck_joints, body, left, [&](int member, Vec<2>& v, AngularVec<2>& w) {
         if (now_[member].im == 0) return false;
         Pose ignored;
         Motion its;
@@ -131,21 +129,36 @@ void Impacts::gather_ends(double when, const Step& step, JointSolver<2>& joints)
 }
 
 // all that meets together; false where it goes pair after pair
-bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step,
-                              JointSolver<2>& joints) {
-  if (instants_ == kMostInstants || (!together_ && joints.empty())) return false;
+bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatch>& batches,
+                              const Step& step) {
+  if (instants_ == kMostInstants || (!together_ && step.joints.empty())) return false;
+  JointSolver<2>& joints = step.struck_joints;
   const Pair& its = step.pairs[first.pair];
   const auto moves = [&](int body) { return body >= 0 && now_[body].im > 0; };
   bool alone = !together_;
   for (const int body : {its.a, its.b}) alone = alone || (moves(body) && crowded_[body] != 0);
-  if (!alone && !gather_instant(first, batches, step, joints)) {
+  if (!alone && !gather_instant(first, batches, step)) {
     // so many touch there that what meets them later goes pair after pair, too
     alone = true;
     for (const int body : {its.a, its.b})
       if (moves(body)) crowded_[body] = 1, crowd_.push_back(body);
   }
   if (alone) take_alone(first);
-  gather_ends(first.when, step, joints);
+  const auto tied_to = [&](int body) { return body >= 0 && joints.component(body) >= 0; };
+  const auto hangs = [&](const Meeting& meeting) {
+    const Pair& pair = step.pairs[meeting.impact.pair];
+    return tied_to(pair.a) || tied_to(pair.b);
+  };
+  const bool tied = !joints.empty() && std::any_of(meetings_.begin(), meetings_.end(), hangs);
+  // what joints leave nothing to move meets nothing
+  if (tied) {
+    std::erase_if(closed_, [&](const auto& touch) {
+      const Meeting& meeting = meetings_[touch.first];
+      return hangs(meeting) && locked(meeting.impact, touch.second, batches, step);
+    });
+    if (closed_.empty()) return false;
+  }
+  gather_ends(first.when, step);
   if (meetings_.size() == 1 && ends_.count() == 0) return false;
   Pose ignored;
   move(its.a, first.when, step, ignored, meetings_[0].a);
@@ -166,11 +179,6 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     of[0] = {pair.a, push.x, push.y, push.a, now_[pair.a].im, g.iia[lane]};
     of[1] = {b, -push.x, -push.y, -push.b, now_[b].im, g.iib[lane]};
   };
-  const auto tied_to = [&](int body) { return body >= 0 && joints.component(body) >= 0; };
-  const bool tied = !joints.empty() && std::any_of(meetings_.begin(), meetings_.end(), [&](const Meeting& m) {
-    const Pair& pair = step.pairs[m.impact.pair];
-    return tied_to(pair.a) || tied_to(pair.b);
-  });
 
   instant_.resize(count, ends_.count());
   auto& K = instant_.K;
@@ -209,8 +217,6 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
       }
       K(i, j) = K(j, i) = sum;
     }
-    // joints may leave it nothing to move
-    if (i % 2 == 0 && !(K(i, i) > InstantImpact<2>::kLockedPush * (own[0].im + own[1].im))) return false;
   }
   if (tied) ends_.couple(joints, std::span(instant_responses_).first(std::size_t(rows)), instant_);
   ++instants_;
@@ -227,7 +233,7 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     meeting.moved = meeting.impact.any() || (ends_push && (tied_to(pair.a) || tied_to(pair.b)));
     if (!meeting.moved) continue;
     reach(pair.a, first.when, step), reach(pair.b >= 0 ? pair.b : room, first.when, step);
-    if (tied) reach_component(pair, first.when, step, joints);
+    if (tied) reach_component(pair, first.when, step);
   }
   for (int i = 0; i < rows; ++i) {
     const double l = instant_.p[i];

@@ -204,7 +204,9 @@ class SpaceIterative final : public Iterative<3> {
   void set_rows(int k, const ContactConstraint& touch, const Vec<D>& normal, const Vec<D>& arm_a,
                 const Vec<D>& arm_b, const BodyMotion<D>& a, const BodyMotion<D>& b);
   void couple_rows(Eigen::Ref<Eigen::MatrixXd> K) const;
-  int build_impact_rows(double t, double h);
+  void place_joints(int body, double t, double h);
+  bool locked(const ContactConstraint& touch);
+  void build_impact_rows(double t, double h);
   bool solve_impact(double t, double h, std::vector<double>& work);
   // act(body) for what moves of a side of a touch, and for all that hangs together with it on joints
   template <class Act>
@@ -344,6 +346,7 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<Row<D>> impact_rows_;
   std::vector<RowResponse<D>> impact_responses_;
   std::vector<JointSolver<D>::JointResponse> tied_responses_;
+  JointSolver<D>::JointResponse locked_response_;
   StruckEnds<D> struck_ends_;
   bool impact_tied_ = false;  // whether joints answer the impact
 };

@@ -82,6 +82,25 @@ void SpaceIterative::couple_rows(Eigen::Ref<Eigen::MatrixXd> K) const {
   }
 }
 
+// where an impact finds the joints of a body
+void SpaceIterative::place_joints(int body, double t, double h) {
+  const int component = joints_.component(body);
+  if (component < 0) return;
+  struck_joints_.compute_rows_at(t, joints_, component, [&](int it, BodyMotion<D>& at, Orientation<D>& turn) {
+    const Flown& there = flown(it, t, h);
+    at.x = there.stance.x, at.room_from_body = there.stance.room_from_body, turn = there.turn;
+  });
+}
+
+// whether joints leave a touch nothing to move
+bool SpaceIterative::locked(const ContactConstraint& touch) {
+  const int none = int(model_.bodies.size());
+  Row<D>& row = locked_response_.row;
+  row.a = touch.a, row.b = touch.b == none ? -1 : touch.b, row.along = touch.n;
+  row.angular_a = moment<D>(touch.arm_a, touch.n), row.angular_b = moment<D>(touch.arm_b, touch.n);
+  return joints_.locks(locked_response_);
+}
+
 // the ends of joints that are reached by what meets at a time
 void SpaceIterative::gather_ends(double t, double h) {
   struck_ends_.clear();
@@ -89,20 +108,21 @@ void SpaceIterative::gather_ends(double t, double h) {
   for (const int touch : meets_) {
     for (const int body : {touches_[touch].a, touches_[touch].b}) {
       if (body == int(model_.bodies.size())) continue;
-      struck_ends_.add(joints_, body, 1 - t / h, [&](int member, Vec<D>& v, AngularVec<D>& w) {
-        if (inactive_[member]) return false;
-        const BodyMotion<D>& at = flown(member, t, h).stance;
-        v = at.v, w = at.w;
-        return true;
-      });
+      place_joints(body, t, h);
+      struck_ends_.add(joints_, struck_joints_, body, 1 - t / h,
+                       [&](int member, Vec<D>& v, AngularVec<D>& w) {
+                         if (inactive_[member]) return false;
+                         const BodyMotion<D>& at = flown(member, t, h).stance;
+                         v = at.v, w = at.w;
+                         return true;
+                       });
     }
   }
   struck_ends_.limit();
 }
 
-// the rows of what meets at a time, n and across it of each gap, their M^-1 J', K and J v; or the number of
-// one of them that joints leave nothing to move, else negative
-int SpaceIterative::build_impact_rows(double t, double h) {
+// the rows of what meets at a time, n and across it of each gap, their M^-1 J', K and J v
+void SpaceIterative::build_impact_rows(double t, double h) {
   const int count = int(meets_.size()), rows = D * count, n = int(model_.bodies.size());
   begin_rows(count);
   impact_tied_ = false;
@@ -126,34 +146,33 @@ int SpaceIterative::build_impact_rows(double t, double h) {
       if (body == n) continue;
       const bool tied = joints_.component(body) >= 0;
       impact_tied_ = impact_tied_ || tied;
-      if (!tied) joints_.body_motion(body) = *it;
+      if (!tied) struck_joints_.body_motion(body) = *it;
     }
   }
-  if (!impact_tied_) {
-    couple_rows(instant_.K);
-    return -1;
-  }
+  if (!impact_tied_) return couple_rows(instant_.K);
   auto& K = instant_.K;
   if (int(tied_responses_.size()) < rows) tied_responses_.resize(rows);
   for (int i = 0; i < rows; ++i) {
     tied_responses_[i].row = impact_rows_[i];
-    joints_.compute_response(tied_responses_[i]);
+    struck_joints_.compute_response(tied_responses_[i]);
     for (int j = 0; j <= i; ++j)
-      K(i, j) = K(j, i) = joints_.response_between(tied_responses_[i], tied_responses_[j]);
-    const Row<D>& row = impact_rows_[i];
-    const double without = response_.inverse_mass(row.a) + response_.inverse_mass(row.b);
-    if (i % D == 0 && !(K(i, i) > InstantImpact<D>::kLockedPush * without)) return i / D;
+      K(i, j) = K(j, i) = struck_joints_.response_between(tied_responses_[i], tied_responses_[j]);
   }
-  struck_ends_.couple(joints_, std::span(tied_responses_).first(std::size_t(rows)), instant_);
-  return -1;
+  struck_ends_.couple(struck_joints_, std::span(tied_responses_).first(std::size_t(rows)), instant_);
 }
 
 // all that meets at a time, at once; false where no impulses were found
 bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work) {
-  for (int locked = build_impact_rows(t, h); locked >= 0; locked = build_impact_rows(t, h)) {
-    if (meets_.size() == 1) return false;
-    meets_.erase(meets_.begin() + locked);
+  // what joints leave nothing to move meets nothing
+  const auto tied = [&](int body) {
+    return body < int(model_.bodies.size()) && joints_.component(body) >= 0;
+  };
+  if (!joints_.empty()) {
+    std::erase_if(meets_,
+                  [&](int i) { return (tied(touches_[i].a) || tied(touches_[i].b)) && locked(touches_[i]); });
+    if (meets_.empty()) return false;
   }
+  build_impact_rows(t, h);
   const int rows = int(impact_rows_.size());
   if (!instant_.solve()) return false;
   const auto& impulses = instant_.p;
@@ -177,17 +196,17 @@ bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work)
         const BodyMotion<D>& at = flown(body, t, h).stance;
         gives -= sign * (row.along.dot(at.v) + turn.dot(at.w));
       }
-      if (impact_tied_) gives += joints_.given(tied_responses_[i]);
+      if (impact_tied_) gives += struck_joints_.given(tied_responses_[i]);
       work[0] += impulses[i] * gives;
     }
   }
   for (int i = 0; i < rows; ++i) {
     touches_[meets_[i / D]].impact_impulse += impulses[i] * impact_rows_[i].along;
     if (impact_tied_) {
-      joints_.each_push(tied_responses_[i], impulses[i],
-                        [&](int body, const Vec<D>& dv, const AngularVec<D>& dw) {
-                          flown_[body].stance.v += dv, flown_[body].stance.w += dw;
-                        });
+      struck_joints_.each_push(tied_responses_[i], impulses[i],
+                               [&](int body, const Vec<D>& dv, const AngularVec<D>& dw) {
+                                 flown_[body].stance.v += dv, flown_[body].stance.w += dw;
+                               });
       continue;
     }
     each_response(impact_rows_[i], impact_responses_[i], impulses[i],
@@ -197,7 +216,7 @@ bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work)
                   });
   }
   const double gives =
-      struck_ends_.apply(joints_, instant_, [&](int body, const Vec<D>& dv, const AngularVec<D>& dw) {
+      struck_ends_.apply(struck_joints_, instant_, [&](int body, const Vec<D>& dv, const AngularVec<D>& dw) {
         flown_[body].stance.v += dv, flown_[body].stance.w += dw;
       });
   if (!carries_.empty() && !work.empty()) work[0] += gives;
@@ -221,6 +240,7 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
   if (!any) return;
   lay_down_ends(state, h);
   begin_flights(state, h);
+  begin_struck_joints(state);
   find_closing(state, h);
   renewed_.clear();
   rounds_.assign(n + 1, 0), crowded_.assign(n + 1, 0);
@@ -290,6 +310,14 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
         target_after_impacts(touch.apart, {at.now.value, at.speed}, kTogether * bounding_radius_[touch.a],
                              -restitution_threshold_, left, h);
   }
+  end_struck_joints([&](int body) {
+    Twist<D> given;
+    if (when_[body] < 0) return given;
+    const BodyMotion<D> end = flown(body, h, h).stance;
+    given.v = end.v - v_free_[body];
+    if (const int k = turning(state, body); k >= 0) given.w = end.w - w_free_[k];
+    return given;
+  });
   for (int i = 0; i < n; ++i) {
     if (when_[i] < 0) continue;
     Flown end = flown(i, h, h);

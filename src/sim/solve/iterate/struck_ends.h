@@ -18,23 +18,24 @@ class StruckEnds {
 
   void clear() { ends_.clear(), components_.clear(); }
 
-  /// Adds those of the component of a body that is struck, once. motion(member, v, w) gives how one of the
+  /// Adds those of the component of a body that is struck, once; `struck`: the joints where the impact finds
+  /// them. motion(member, v, w) gives how one of the
   /// component moves as the impact comes, m/s and rad/s, or is false where it does not; `left`: what part of
   /// the step comes after the impact.
   template <class Motion>
-  void add(JointSolver<D>& joints, int body, double left, Motion&& motion) {
+  void add(const JointSolver<D>& joints, JointSolver<D>& struck, int body, double left, Motion&& motion) {
     const int component = joints.component(body);
     if (component < 0 || std::count(components_.begin(), components_.end(), component) != 0) return;
     components_.push_back(component);
-    const auto reached = joints.reached_ends(component);
+    const auto reached = struck.reached_ends(component);
     if (reached.empty()) return;
     for (const int member : joints.members(component)) {
-      BodyMotion<D>& at = joints.body_motion(member);
+      BodyMotion<D>& at = struck.body_motion(member);
       if (!motion(member, at.v, at.w) || !joints.stopped()) continue;
       // flights come to it by and by
       at.v += left * joints.jump(member), at.w += left * joints.spin_jump(member);
     }
-    for (const Response& end : reached) ends_.push_back({&end, joints.row_speed(end)});
+    for (const Response& end : reached) ends_.push_back({&end, struck.row_speed(end)});
   }
   /// More than an impact takes are none.
   void limit() {
