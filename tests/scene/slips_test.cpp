@@ -208,5 +208,24 @@ TEST(Slips, WhatNothingRubsFeelsAForceFromItsFirstInstant) {
       }
 }
 
+// A ball that slides on a plate that turns: its slip turns as it comes to where the plate goes another way.
+// Friction is against the way it slides, which is that of the middle of a substep.
+TEST(Slips, OnAPlateThatTurnsFrictionTurnsWithTheSlip) {
+  const auto ended = [](const std::string& physics) {
+    const TextRun scene(
+        "duration = 1\n[room]\nsize = [20, 6, 20]\nfriction = 0\n[physics]\n" + physics +
+        "\n[[box]]\nname = 'table'\nposition = [0, 0.1, 0]\nsize = [8, 0.2, 8]\nmass = 1000\nspin = [0, 100, "
+        "0]\nfriction = 0.05\nelasticity = 0\n" +
+        disc("r", 1, 0.1, "position = [0, 0.3, 0]\nvelocity = [0.5, 0, 0]\nfriction = 0.05\nelasticity = 0"));
+    return scene.at(0.3).bodies[1];
+  };
+  const sim::Snapshot::Body right = ended("collision = 'event'\nrate = 1920");
+  for (const int rate : {60, 240, 960}) {
+    const sim::Snapshot::Body now = ended(fmt::format("solver = 'iterative'\nrate = {}", rate));
+    EXPECT_LT((now.velocity - right.velocity).norm(), 3e-6 * right.velocity.norm()) << rate;
+    EXPECT_LT((now.spin - right.spin).norm(), 3e-6 * right.spin.norm()) << rate;
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

@@ -312,7 +312,7 @@ int ForwardDynamics<D>::pieces(const State<D>& state, double h) const {
 template <int D>
 void ForwardDynamics<D>::step(Integrate* integrate, State<D>& state, double t, double h, Stages& stages,
                               System* with) {
-  work_ = 0, begun_ = t;
+  work_ = rough_ = 0, begun_ = t;
   if (all_.empty()) return;
   if (flying_ && !with && bearing_.empty() && !blasting(state)) return fly(integrate, state, t, h, stages);
   posed_ = with != nullptr;
@@ -358,13 +358,14 @@ void ForwardDynamics<D>::piece(Integrate* integrate, State<D>& state, double t, 
       const std::span<double> rate = stages.row(kRk4Rates[k], v_.size());
       for (std::size_t i = 0; i < rate.size(); ++i) rate[i] -= from_contacts_[k][i];
     }
-    const double least = kFaintest * model_.scale;
-    note_roughness(state.limits_met, state.step,
-                   roughness({bodies_.size(), D, D, 1}, h, v_, least, stages, rates.tied()));
+    const auto note = [&](const VelocityRows& rows, double least, bool of_spins) {
+      const Roughness found = roughness(rows, h, v_, least, stages, rates.tied());
+      note_roughness(state.limits_met, state.step, found, of_spins);
+      rough_ = std::max(rough_, found.ratio);
+    };
     const std::size_t spins = std::size_t(turning_), axes = std::size_t(kAngular<D>);
-    note_roughness(
-        state.limits_met, state.step,
-        roughness({spins, axes, axes, 1, D * bodies_.size()}, h, v_, kFaintest, stages, rates.tied()), true);
+    note({bodies_.size(), D, D, 1}, kFaintest * model_.scale, false);
+    note({spins, axes, axes, 1, D * bodies_.size()}, kFaintest, true);
   }
 
   for (int i = 0; i < n; ++i) {

@@ -83,6 +83,8 @@ class ForwardDynamics final : public System {
   const std::vector<DrivenMotion<D>>& driven() const { return driven_; }
   /// The work (J) of kinematic bodies in the last step(), and what `with` added at work_place().
   double work() const { return work_; }
+  /// How long the last step() was for its forces: the largest Roughness::ratio, by Runge and Kutta's scheme.
+  double rough() const { return rough_; }
   /// The index in v' of the power of kinematic bodies, W; negative: there are none.
   int work_place() const { return books_ ? chain_start() + chains_.size() : -1; }
 
@@ -167,6 +169,7 @@ class ForwardDynamics final : public System {
   Drives<D> drives_;
   std::vector<DrivenMotion<D>> driven_;
   bool books_ = false;  // some bodies are kinematic or have belts
+  double rough_ = 0;
   double work_ = 0;
   bool posed_ = true;  // poses at each stage are asked for from outside
   Articulated<D> chains_;

@@ -20,6 +20,7 @@ struct ContactConstraint {
   Vec<D> before = Vec<D>::Zero();           // N: the force of the last substep
   Vec<D> belt = Vec<D>::Zero();             // m/s: what belts add to the slip of a against b
   Vec<D> drift = Vec<D>::Zero();  // m/s: what arms that turn within the substep add to it at its end
+  Vec<D> leads = Vec<D>::Zero();  // m/s: of what slides on, half of what its slip changes by in the substep
   int renewals = 0;               // of its features, since the substep began
   double apart = 0;               // m/s: of that, what its row is faster than its matter was where the
                                   // last impact of its bodies left it
@@ -31,8 +32,9 @@ struct ContactConstraint {
   bool blow = false;              // it closes fast
   double closes = 0;              // when it bounces, s from the start of the substep
 
-  /// m/s: what is to be added to the slip at the end of the substep.
-  Vec<D> surface() const { return belt + drift; }
+  /// m/s: what is to be added to the speeds of its bodies at the end of the substep for the slip that
+  /// friction is against: that at its end, or of what slides on in its middle.
+  Vec<D> surface() const { return belt + drift - leads; }
 };
 
 }  // namespace obscura::sim

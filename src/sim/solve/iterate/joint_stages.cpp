@@ -27,7 +27,9 @@ constexpr int kMostTries = 40;         // for the time of one
 constexpr double kAtEnd = 1e-13;       // of a joint's size: nearer to its end it is there
 constexpr double kOver = 1e-12;        // farther beyond it is
 constexpr double kNothingLeft = 1e-9;  // of a step: what is left of it is none
-constexpr int kPieces = 64;            // of a step that is too long
+constexpr int kPieces = 64;            // of a step that is too long,
+constexpr int kFewPieces = 8;          // or for which forces change so much:
+constexpr double kRough = 0.001;       // Roughness::ratio
 constexpr double kLeap = 2;            // times the energy that it had
 constexpr double kFalls = 100;         // times what it gains by gravity in a step
 constexpr double kHalfTurn = 3;        // rad, nearly
@@ -53,9 +55,13 @@ double JointSolver<D>::step(ForwardDynamics<D>& dynamics, Integrate* integrate, 
   };
   const auto step_free = [&](double from, double span) {
     move(from, span, 1);
-    if (held_.empty() || !leaps(state, h)) return;
+    const int pieces = held_.empty()               ? 1
+                       : leaps(state, h)           ? kPieces
+                       : dynamics.rough() > kRough ? kFewPieces
+                                                   : 1;
+    if (pieces == 1) return;
     restore(state);
-    move(from, span, kPieces);
+    move(from, span, pieces);
   };
   if (bounded_blocks_.empty()) {
     save(state);

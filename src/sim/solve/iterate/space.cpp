@@ -287,6 +287,7 @@ void SpaceIterative::set_aims(int begin, int end, const State<D>& state, double 
     while (known != state.contacts.end() && known->key < touch.key) ++known;
     const bool known_one = known != state.contacts.end() && known->key == touch.key;
     const bool lasting = known_one && lasts(touch, known->force);
+    const bool slides = lasting && !touch.after && slides_on(touch, known->force, passes, h);
     if (touch.after) {
       // what is left of the step
     } else if (!lasting && before < -strike_speed(touch) && touch.gap + h * (before - g_ * h) < 0) {
@@ -301,6 +302,10 @@ void SpaceIterative::set_aims(int begin, int end, const State<D>& state, double 
     }
     if (touch.gap * touch.per_width < kNearby && (touch.rests || !touch.after) && !strikes(touch, passes))
       center(i, state, h, known_one && touch.n.dot(known->force) > 0);
+    if (slides) {
+      const Vec<D> changes = slip(touch) - touch.belt - passes;
+      touch.leads = 0.5 * (changes - touch.n * touch.n.dot(changes));
+    }
     if (!known_one) continue;
     touch.before = known->force;
     touch.normal_impulse = std::max(0.0, h * known->force.dot(touch.n));

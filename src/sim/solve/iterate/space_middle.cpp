@@ -15,6 +15,9 @@ namespace obscura::sim {
 
 namespace {
 
+constexpr double kSlidingShare = 0.999;  // of the square of what friction can: more slides
+constexpr double kAnswers =
+    8;  // of what a push moves a body by at its centre, how far it moves what is pushed
 constexpr double kMostAskew = 0.5;  // the cosine by which a normal turns in half a substep, at most
 
 }  // namespace
@@ -29,6 +32,19 @@ bool SpaceIterative::lasts(const ContactConstraint& touch, const Vec<D>& force) 
   double speed = std::sqrt(passes.squaredNorm()) + bounding_radius_[touch.a] * std::sqrt(a.w.squaredNorm());
   if (!wall) speed += bounding_radius_[touch.b] * std::sqrt(b.w.squaredNorm());
   return -touch.n.dot(passes) <= kLasting * speed;
+}
+
+// Whether what bears and slides, and passes like that where the substep begins, slides to its end: friction
+// is then against its way, which is that of the middle: what forces and the ways of both turn the slip by is
+// known before. What stages of the free motion have of friction is taken out of these as it is at the end.
+bool SpaceIterative::slides_on(const ContactConstraint& touch, const Vec<D>& force, const Vec<D>& passes,
+                               double h) const {
+  if (touch.mu == 0 || (varies_ && bears(touch.a, touch.b))) return false;
+  const double pressed = touch.n.dot(force), most = touch.mu * pressed;
+  if ((force - pressed * touch.n).squaredNorm() < kSlidingShare * most * most) return false;
+  const double stops = kAnswers * h * most * (moving_[touch.a].inverse_mass + moving_[touch.b].inverse_mass);
+  const Vec<D> slips = passes + touch.belt;
+  return (slips - touch.n * touch.n.dot(slips)).squaredNorm() > stops * stops;
 }
 
 // Whether a blow, that is left to the iterations or has been, changes by much how fast a's matter passes b's:
