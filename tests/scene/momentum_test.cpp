@@ -143,5 +143,27 @@ TEST(Momentum, AndEnergyOfALinkageNearADeadCentreStay) {
   }
 }
 
+// A clay ball slides along a free plank and meets it slowly: one impulse at the time and place where it does.
+TEST(Momentum, OfASlowBlowOfClayIsGivenWhereItMeets) {
+  for (const int dimension : {2, 3}) {
+    for (const int rate : {60, 600}) {
+      const TextRun scene(
+          empty_room_at(dimension, rate) + "[[box]]\nname = 'p'\nposition = " + place(dimension, 0, 3) +
+          (dimension == 2 ? "\nsize = [6, 0.2]" : "\nsize = [6, 0.2, 1]") +
+          "\nmass = 5\nfriction = 0\nelasticity = 0\n" +
+          disc("r", 3, 0.25,
+               "position = " + place(dimension, 1, 3.352) + "\nvelocity = " + place(dimension, 3, -0.2) +
+                   "\nfriction = 0\nelasticity = 0"));
+      // 0.002 m above it, at 0.2 m/s: after 0.01 s, at x = 1.03
+      const double x = 1.03, inertia = 5 * (36 + 0.04) / 12;
+      const double impulse = 0.2 / (1.0 / 3 + 1.0 / 5 + x * x / inertia);
+      const sim::Snapshot now = scene.at(0.0375);
+      EXPECT_NEAR(now.bodies[number_of(scene, "r")].velocity.y(), -0.2 + impulse / 3, 1e-9)
+          << dimension << " at " << rate;
+      EXPECT_NEAR(now.angular_momentum.z(), 3 * (1 * -0.2 - 3.352 * 3), 1e-11) << dimension << " at " << rate;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

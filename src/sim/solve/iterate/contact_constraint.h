@@ -29,6 +29,7 @@ struct ContactConstraint {
   bool passes = false;            // however it looks, it does not close with an impact
   bool bounces = false;           // an impact that is left to the iterations
   bool closing = false;           // slowly
+  bool slides = false;            // and goes on to
   bool blow = false;              // it closes fast
   double closes = 0;              // when it bounces, s from the start of the substep
 

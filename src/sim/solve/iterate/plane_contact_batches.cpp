@@ -218,7 +218,7 @@ void PlaneIterative::fill_lane(int i, const State<D>& state) {
   g.pair[lane] = i, g.first[lane] = pair.first, g.touches[lane] = static_cast<unsigned char>(pair.touches);
   g.impact_speed[lane] =
       -(pair.material.elasticity > 0 ? restitution_threshold_
-                                     : std::max(restitution_threshold_, kSoft * thin / span_));
+                                     : std::max(restitution_threshold_, many_ ? kSoft * thin / span_ : 0));
   pair.impact_speed = float(-0.999 * g.impact_speed[lane]);
   g.sight[lane] = sight, g.mu[lane] = pair.material.friction, g.radius[lane] = radius;
   g.per_width[lane] = 1 / std::max(2 * thin, kPointWidth * model_.scale);

@@ -255,7 +255,7 @@ Orientation<3> SpaceIterative::begun_turn(int body) const {
 // what each touch wants of the step, and the forces it had in the last
 void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
   const int count = int(touches_.size());
-  known_force_.resize(touches_.size());
+  known_force_.resize(touches_.size()), free_slips_.resize(touches_.size());
   each(workers(), count, kTouchPiece, [&](int begin, int end) { set_aims(begin, end, state, h); });
   order_blows(h);
   closing_.assign(model_.bodies.size() + 1, 0), all_.resize(touches_.size());
@@ -268,6 +268,9 @@ void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
       const ContactConstraint& touch = touches_[i];
       if (known_force_[i]) push(touch, touch.normal_impulse * touch.n + touch.tangent_impulse);
     }
+  });
+  each(workers(), count, kTouchPiece, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) lead(i);
   });
 }
 
@@ -287,7 +290,7 @@ void SpaceIterative::set_aims(int begin, int end, const State<D>& state, double 
     while (known != state.contacts.end() && known->key < touch.key) ++known;
     const bool known_one = known != state.contacts.end() && known->key == touch.key;
     const bool lasting = known_one && lasts(touch, known->force);
-    const bool slides = lasting && !touch.after && slides_on(touch, known->force, passes, h);
+    touch.slides = lasting && !touch.after && slides_on(touch, known->force, passes, h);
     if (touch.after) {
       // what is left of the step
     } else if (!lasting && before < -strike_speed(touch) && touch.gap + h * (before - g_ * h) < 0) {
@@ -302,8 +305,9 @@ void SpaceIterative::set_aims(int begin, int end, const State<D>& state, double 
     }
     if (touch.gap * touch.per_width < kNearby && (touch.rests || !touch.after) && !strikes(touch, passes))
       center(i, state, h, known_one && touch.n.dot(known->force) > 0);
-    if (slides) {
-      const Vec<D> changes = slip(touch) - touch.belt - passes;
+    if (touch.slides) {
+      free_slips_[i] = slip(touch);
+      const Vec<D> changes = free_slips_[i] - touch.belt - passes;
       touch.leads = 0.5 * (changes - touch.n * touch.n.dot(changes));
     }
     if (!known_one) continue;

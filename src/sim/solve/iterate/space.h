@@ -244,6 +244,7 @@ class SpaceIterative final : public Iterative<3> {
   bool lasts(const ContactConstraint& touch, const Vec<D>& force) const;
   bool slides_on(const ContactConstraint& touch, const Vec<D>& force, const Vec<D>& passes, double h) const;
   bool strikes(const ContactConstraint& touch, const Vec<D>& passes) const;
+  void lead(int touch);
   void center(int touch, const State<D>& state, double h, bool bears);
   void find_bearing(const State<D>& state, double h);
   bool gives(int body) const {
@@ -304,6 +305,8 @@ class SpaceIterative final : public Iterative<3> {
   double found_for_ = 0;                                      // s: of what time within the step
   std::vector<std::pair<int, ContactCandidate<D>>> renewed_;  // touches, and what they had before
   std::vector<int> all_, some_;
+  std::vector<int> bearing_touches_;  // of bearing_
+  std::vector<double> rubbed_;        // bodies, m/s^2: what the friction of these would give at most
   std::vector<Vec<D>> x_, x_free_, v_free_, gains_, bends_;
   std::vector<AngularVec<D>> spin_gains_, turn_bends_;
   std::vector<Orientation<D>> turn_, turn_free_;
@@ -318,6 +321,7 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<FirstBlow> first_blows_;
   std::vector<LaterBlow> later_blows_;
   double given_by_blows_ = 0;                       // J: by what is moved, with the blows before later ones
+  std::vector<Vec<D>> free_slips_;                  // m/s, of each touch that slides: that of the free motion
   std::vector<char> known_force_;                   // of each touch: whether the state has a force for it
   std::vector<double> before_, gained_, returned_;  // of each island's impacts, J
   std::vector<ContactWork> works_;                  // of each touch

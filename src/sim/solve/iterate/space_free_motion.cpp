@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kLasts = 2;        // times what it was before: a force that is more was of a blow
 constexpr double kSliding = 0.999;  // of the square of what friction can: more slides
+constexpr double kMoves = 4;        // of what a push moves a centre by, how far it moves what is pushed
 
 Vec<3> lasting(const Contact<3>& contact) {
   const double now = contact.force.squaredNorm(), before = kLasts * kLasts * contact.before.squaredNorm();
@@ -27,6 +28,7 @@ Vec<3> lasting(const Contact<3>& contact) {
 void SpaceIterative::find_bearing(const State<D>& state, double h) {
   begin_bearing(state);
   const int n = int(model_.bodies.size());
+  bearing_touches_.clear(), rubbed_.assign(std::size_t(n) + 1, 0);
   auto known = state.contacts.begin();
   for (std::size_t i = 0; i < touches_.size(); ++i) {
     const ContactConstraint& touch = touches_[i];
@@ -39,14 +41,20 @@ void SpaceIterative::find_bearing(const State<D>& state, double h) {
     contact.gap = features_[i], contact.belt = touch.belt;
     contact.normal = touch.n, contact.point = touch.point, contact.force = lasting(*known);
     contact.begin(stances_[std::size_t(touch.a)]);
-    // as long as friction does not bring it to rest
-    const Vec<D> slips = slip(touch);
     const double pressed = touch.n.dot(contact.force);
     const Vec<D> rubs = contact.force - pressed * touch.n;
-    const double stops = h * (moving_[touch.a].inverse_mass + moving_[touch.b].inverse_mass);
-    contact.slides =
-        rubs.squaredNorm() > kSliding * touch.mu * touch.mu * pressed * pressed &&
-        (slips - touch.n * touch.n.dot(slips)).squaredNorm() > stops * stops * rubs.squaredNorm();
+    contact.slides = rubs.squaredNorm() > kSliding * touch.mu * touch.mu * pressed * pressed;
+    for (const int body : {touch.a, touch.b})
+      rubbed_[std::size_t(body)] += moving_[body].inverse_mass * std::sqrt(rubs.squaredNorm());
+    bearing_touches_.push_back(int(i));
+  }
+  // as long as friction, of all that rubs there, does not bring it to rest
+  for (std::size_t k = 0; k < bearing_.size(); ++k) {
+    const ContactConstraint& touch = touches_[std::size_t(bearing_touches_[k])];
+    const Vec<D> slips = slip(touch);
+    const double stops = kMoves * h * (rubbed_[std::size_t(touch.a)] + rubbed_[std::size_t(touch.b)]);
+    bearing_[k].slides =
+        bearing_[k].slides && (slips - touch.n * touch.n.dot(slips)).squaredNorm() > stops * stops;
   }
   find_borne(state, h);
 }

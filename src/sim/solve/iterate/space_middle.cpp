@@ -35,8 +35,8 @@ bool SpaceIterative::lasts(const ContactConstraint& touch, const Vec<D>& force) 
 }
 
 // Whether what bears and slides, and passes like that where the substep begins, slides to its end: friction
-// is then against its way, which is that of the middle: what forces and the ways of both turn the slip by is
-// known before. What stages of the free motion have of friction is taken out of these as it is at the end.
+// is then against its way, which is that of the middle. What stages of the free motion have of friction is
+// taken out of these as it is at the end.
 bool SpaceIterative::slides_on(const ContactConstraint& touch, const Vec<D>& force, const Vec<D>& passes,
                                double h) const {
   if (touch.mu == 0 || (varies_ && bears(touch.a, touch.b))) return false;
@@ -45,6 +45,20 @@ bool SpaceIterative::slides_on(const ContactConstraint& touch, const Vec<D>& for
   const double stops = kAnswers * h * most * (moving_[touch.a].inverse_mass + moving_[touch.b].inverse_mass);
   const Vec<D> slips = passes + touch.belt;
   return (slips - touch.n * touch.n.dot(slips)).squaredNorm() > stops * stops;
+}
+
+// What the forces that contacts had last change of its slip across their friction, beside what free motion
+// and the way rows turn do. What friction changes along itself turns nothing; and of what is on joints these
+// forces are no guess, as joints answer them.
+void SpaceIterative::lead(int number) {
+  ContactConstraint& touch = touches_[std::size_t(number)];
+  const double rubs = touch.tangent_impulse.squaredNorm();
+  if (!touch.slides || !(rubs > 0)) return;
+  const auto tied = [&](int body) { return body < int(model_.bodies.size()) && joints_.has(body); };
+  if (tied(touch.a) || tied(touch.b)) return;
+  const Vec<D> changes = slip(touch) - free_slips_[std::size_t(number)];
+  touch.leads += 0.5 * (changes - touch.n * touch.n.dot(changes) -
+                        touch.tangent_impulse * (touch.tangent_impulse.dot(changes) / rubs));
 }
 
 // Whether a blow, that is left to the iterations or has been, changes by much how fast a's matter passes b's:
@@ -73,6 +87,8 @@ void SpaceIterative::center(int number, const State<D>& state, double h, bool be
     const BodyMotion<D> there = ahead<D>(at, begun_turn(body), 0.5 * h);
     at.x = there.x, at.room_from_body = there.room_from_body;
     at.w = stances_[std::size_t(body)].w;
+    // they turn as they move after it
+    if (touch.after && !inactive_[std::size_t(body)]) at.v = moving_[body].v, at.w = moving_[body].w;
     return at;
   };
   const BodyMotion<D> a = middle(touch.a), b = middle(touch.b);
