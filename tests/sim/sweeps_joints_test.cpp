@@ -104,7 +104,7 @@ TEST(SweptJoints, ThrownDollsHangTogetherLoseEnergyAndLieStill) {
     for (std::size_t i = 0; i < one.model.bodies.size(); ++i) {
       world.model.bodies.push_back(one.model.bodies[i]);
       world.model.bodies.back().group = 1 + k;
-      world.state.x.push_back(one.state.x[i] + Vec3(0.1 * k, 1.1 * k, 0.05 * k));
+      world.state.x.push_back(one.state.x[i] + Vec3(0.15 * k, 1.1 * k, 0.05 * k));
       world.state.v.push_back(one.state.v[i]), world.state.turn.push_back(one.state.turn[i]);
       world.state.spin.push_back(one.state.spin[i]);
     }
