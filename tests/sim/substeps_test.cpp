@@ -7,6 +7,8 @@
 #include <numeric>
 #include <vector>
 
+#include "sim/touching.h"
+
 namespace obscura::sim {
 namespace {
 
@@ -39,6 +41,21 @@ TEST(Substeps, DivideAStepByHowFastPairsClose) {
   EXPECT_EQ(substeps_for(0, 1.0 / 600), 1);
   EXPECT_EQ(substeps_for(60, 1.0 / 60), 40);
   EXPECT_EQ(substeps_for(1e9, 1.0 / 60), 80);
+}
+
+// in a substep nothing falls farther than a fiftieth of the narrowest width
+TEST(Substeps, AreAsManyAsTinyBodiesNeedToLieAtRest) {
+  World<2> world = touching_room();
+  EXPECT_EQ(resting_substeps(world.model), 240);
+  add_ball(world, 0.05, 1, {1, 1});
+  EXPECT_EQ(resting_substeps(world.model), 240);
+  add_ball(world, 5e-5, 1, {2, 1});
+  const double fewest = resting_substeps(world.model);
+  EXPECT_NEAR(9.81 / (fewest * fewest), 1e-4 / 50, 1e-12);
+  EXPECT_EQ(substeps_for(0, 1.0 / 60, fewest), 37);
+  // of many, a few do not rule
+  for (int i = 0; i < 200; ++i) add_ball(world, 0.05, 1, {1, 1});
+  EXPECT_EQ(resting_substeps(world.model), 240);
 }
 
 }  // namespace

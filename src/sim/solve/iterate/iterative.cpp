@@ -38,6 +38,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
       warm_start_(model),
       g_(std::sqrt(model.gravity.squaredNorm())),
       allowed_overlap_(sim::allowed_overlap(model)),
+      fewest_substeps_(resting_substeps(model)),
       every_(std::max<std::int64_t>(1, std::llround(value(model.rate) / kPairSearches))),
       moving_(model.bodies.size() + 1) {
   for (const Body<D>& body : model.bodies) bounding_radius_.push_back(bounding_radius(body.shape));
@@ -45,7 +46,7 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
       dynamics_.ever() || !smooth() ||
       std::any_of(model.bodies.begin(), model.bodies.end(), [](const auto& body) { return body.drag != 0; });
   const double h = 1 / value(model.rate);
-  substeps_ = substeps_for(0, h);
+  substeps_ = substeps_for(0, h, fewest_substeps_);
   if (varies_) tightness_ = tightness(model, std::vector<Grip<D>>(model.mice.size()));
   restitution_threshold_ = 2 * h / substeps_ * g_ + 1e-9 * model.scale;
   if (std::none_of(model.bodies.begin(), model.bodies.end(), [](const auto& body) { return body.carries(); }))
@@ -68,10 +69,10 @@ void Iterative<D>::wake(StepPart<D> step) {
   update_sleep(step);
   foresee_speeds(step);
   closing_rates_ = closing_rates(step.h);
-  substeps_ = substeps_for(closing_rates_.ruling, step.h);
+  substeps_ = substeps_for(closing_rates_.ruling, step.h, fewest_substeps_);
   const double whole = step_length(model_.rate);
   part_of_step_ = step.h < (1 - 1e-9) * whole ? step.h / whole : 1;
-  least_substep_ = part_of_step_ < 1 ? whole / substeps_for(closing_rates_.ruling, whole) : 0;
+  least_substep_ = part_of_step_ < 1 ? whole / substeps_for(closing_rates_.ruling, whole, fewest_substeps_) : 0;
   if (closing_rates_.ruling * step.h > 1.0001 * kCloser * substeps_)
     step.state.limits_met.substeps.note(step.state.step);
   notes_.begin(step.state);

@@ -200,6 +200,7 @@ class Iterative : public ContactSolver<D> {
   double g_ = 0;
   double restitution_threshold_ = 0;  // m/s: slower approaches do not bounce
   AllowedOverlap allowed_overlap_;
+  double fewest_substeps_ = kFewestSubsteps;  // 1/s
   std::int64_t every_ = 1;               // steps between two pair searches
   int substeps_ = 1;                     // of this step
   double part_of_step_ = 1;              // how much of a whole one it is,
