@@ -744,5 +744,88 @@ TEST(Impacts, ForcesAtTheStartAreOfWhatLiesThere) {
   }
 }
 
+// What rests on the limit of its slider, hangs on a taut rope, or is held by friction or a motor, and is
+// struck off it from below within a step: until the blow it is held, and after it by what still can.
+TEST(Impacts, WhatJointsHeldUntilABlowHasNotFallenBeforeIt) {
+  const double g = 9.81, ball = 3, speed = 0.8;
+  for (const int dimension : {2, 3}) {
+    const auto at = [&](double x, double y) {
+      return dimension == 2 ? fmt::format("[{}, {}]", x, y) : fmt::format("[{}, {}, 0]", x, y);
+    };
+    const std::string smooth = "elasticity = 1\nfriction = 0\n", up = at(0, 1);
+    const auto slider = [&](const char* name, double x, const char* more) {
+      return fmt::format(
+          "[[box]]\nname = '{0}'\nposition = {1}\nsize = {2}\nmass = 1\n{3}[[joint]]\ntype = "
+          "'slider'\nbetween = "
+          "['{0}', 'room']\naxis = {4}\n{5}\n[[ball]]\nname = 'b{0}'\nradius = 0.1\nmass = {6}\nposition = "
+          "{7}\nvelocity = {8}\n{3}",
+          name, at(x, 0), dimension == 2 ? "[1, 0.1]" : "[1, 0.1, 1]", smooth, up, more, ball, at(x, -0.17),
+          at(0, speed));
+    };
+    for (const int rate : {60, 240, 960}) {
+      const TextRun scene(
+          (dimension == 2
+               ? plane_without_walls({"", fmt::format("[physics]\nsolver = 'iterative'\nrate = {}", rate)})
+               : space_without_walls({"", fmt::format("[physics]\nsolver = 'iterative'\nrate = {}", rate)})) +
+          slider("s", 6, "limits = [0, 5]") + slider("f", 3, "friction = 15") +
+          slider("m", 0, "motor = { speed = 0, most = 12 }") +
+          "[[ball]]\nname = 'h'\nradius = 0.1\nmass = 1\nposition = " + at(-5, 0) + "\n" + smooth +
+          "[[joint]]\ntype = 'rope'\nbetween = [" + at(-5, 1) + ", 'h']\n" +
+          fmt::format("[[ball]]\nname = 'bh'\nradius = 0.1\nmass = {}\nposition = {}\nvelocity = {}\n", ball,
+                      at(-5, -0.22), at(0, speed)) +
+          smooth);
+      const auto struck = [&](double gap, double brakes, double t) {
+        const double when = (speed - std::sqrt(speed * speed - 2 * g * gap)) / g;
+        return 2 * ball / (ball + 1) * (speed - g * when) - (g + brakes) * (t - when);
+      };
+      const sim::Snapshot now = scene.at(0.04);
+      const auto speed_of = [&](const char* name) { return now.bodies[number_of(scene, name)].velocity.y(); };
+      EXPECT_NEAR(speed_of("s"), struck(0.02, 0, 0.04), 1e-9) << dimension << " at " << rate;
+      EXPECT_NEAR(speed_of("h"), struck(0.02, 0, 0.04), 1e-9) << dimension << " at " << rate;
+      EXPECT_NEAR(speed_of("f"), struck(0.02, 15, 0.04), 1e-9) << dimension << " at " << rate;
+      EXPECT_NEAR(speed_of("m"), struck(0.02, 12, 0.04), 1e-9) << dimension << " at " << rate;
+    }
+  }
+}
+
+// A cube that lies on a plank, which lies on the ground, is struck in its middle: its friction brakes it from
+// then on, and not what has struck it.
+TEST(Impacts, FrictionOfWhatIsStruckIsNotHandedOn) {
+  for (const int rate : {60, 100, 240, 960}) {
+    const TextRun scene(fmt::format(
+        "duration = 1\n[room]\nwalls = 'ground'\nsize = [20, 10, 10]\n[physics]\nsolver = 'iterative'\nrate "
+        "= "
+        "{}\n[[box]]\nname = 'plank'\nposition = [0, 0.1, 0]\nsize = [10, 0.2, 4]\nmass = 1000\nfriction = "
+        "0.7\nelasticity = 0\n[[box]]\nname = 's'\nposition = [0, 0.4, 0]\nsize = [0.4, 0.4, 0.4]\nmass = "
+        "1\nelasticity = 1\nfriction = 0.7\n[[ball]]\nname = 'b'\nradius = 0.1\nposition = [-0.31, 0.4, "
+        "0]\nvelocity = [0.7, 0.070071, 0]\nmass = 3\nelasticity = 1\nfriction = 0\n",
+        rate));
+    const sim::Snapshot now = scene.at(0.03);
+    EXPECT_NEAR(now.bodies[number_of(scene, "b")].velocity.x(), 0.35, 2e-5) << rate;
+    EXPECT_NEAR(now.bodies[number_of(scene, "s")].velocity.x(), 1.05 - 0.7 * 9.81 * (0.03 - 0.1 / 7), 6e-5)
+        << rate;
+  }
+}
+
+// Two balls on a plank on which a box rests, too: their blow is that of the two alone.
+TEST(Impacts, WhatRestsBesideABlowIsNoPartOfIt) {
+  for (const int rate : {60, 100, 240}) {
+    const TextRun scene(fmt::format(
+        "duration = 1\n[room]\nwalls = 'ground'\nsize = [60, 10, 60]\nfriction = 0\n[physics]\nsolver = "
+        "'iterative'\nrate = {}\n[[box]]\nname = 'plank'\nposition = [0, 0.1, 0]\nsize = [20, 0.2, 20]\nmass "
+        "= "
+        "500\nfriction = 0\nelasticity = 0\n[[ball]]\nname = 'b1'\nposition = [-5, 0.4, 0]\nradius = "
+        "0.2\nmass = "
+        "1\nfriction = 0\nelasticity = 1\nvelocity = [3, 0, 0]\n[[ball]]\nname = 'b2'\nposition = [-4, 0.4, "
+        "0.1]\nradius = 0.2\nmass = 1\nfriction = 0\nelasticity = 1\n[[box]]\nposition = [0, 0.3, 0]\nsize = "
+        "[0.4, "
+        "0.2, 0.4]\nmass = 1\nelasticity = 0\nfriction = 0\n",
+        rate));
+    const sim::Snapshot now = scene.at(0.3);
+    EXPECT_NEAR(now.bodies[number_of(scene, "b1")].velocity.x(), 3 * 0.25 * 0.25, 1e-9) << rate;
+    EXPECT_NEAR(now.angular_momentum.y(), 0, 1e-11) << rate;
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

@@ -17,7 +17,7 @@ template <int D>
 class InstantImpact {
  public:
   /// The most contacts of one impact, and the most ends.
-  static constexpr int kMost = 8, kMostEnds = 16;
+  static constexpr int kMost = 16, kMostEnds = 16;
 
   // with room for the most, so that no size allocates
   static constexpr int kMostRows = D * kMost + kMostEnds;
@@ -35,6 +35,8 @@ class InstantImpact {
   void resize(int contacts, int ends = 0);
   /// Finds p. False where no impulses are found.
   bool solve();
+  /// What of p has held what rests since the step began, N s.
+  const Rows& rested() const { return rested_; }
 
  private:
   bool find(const Matrix& response, const Rows& speeds, const std::vector<ConeBlock<D>>& of, Rows& impulses);

@@ -173,13 +173,13 @@ class Iterative : public ContactSolver<D> {
     struck_joints_.gather(state), struck_joints_.forget_places();
   }
   template <class Given>
-  void end_struck_joints(Given&& given) {
+  void end_struck_joints(double h, Given&& given) {
     if (joints_.empty()) return;
     for (const int i : joints_.bodies()) {
       const Twist<D> its = given(i);
       joints_.body_motion(i).v = its.v, joints_.body_motion(i).w = its.w;
     }
-    joints_.keep_struck_speeds(struck_joints_);
+    joints_.keep_struck_speeds(struck_joints_, h);
   }
 
   const Model<D>& model_;

@@ -317,14 +317,17 @@ void JointSolver<D>::collect_bounded(double h) {
     if (load == upper && !one_sided(joint)) b.row.reverse();
     // of what the free motion has given it may take back
     const Hold& hold = holds_[std::size_t(i)];
-    const double before = h * hold.given[load];
+    const auto component = [&](int body) { return body < 0 ? -1 : component_of_body_[std::size_t(body)]; };
+    const int its = std::max(component(joint.a.body), component(joint.b.body));
+    const double after = its < 0 || left_.empty() ? h : h * left_[std::size_t(its)],
+                 before = after * hold.given[load];
     if (load == lower || load == upper) {
       const double off = left(i, load);
       const double sees = 4 * h * (std::fabs(speed(b.row, at_)) + g * h) + 1e-3 * model_.scale;
       if (off > sees) return;
       b.least = -std::max(before, 0.0), b.most = kEndless, b.target = -std::max(off, 0.0) / h;
     } else {
-      const double most = h * (load == motor ? joint.motor->most : joint.friction);
+      const double most = after * (load == motor ? joint.motor->most : joint.friction);
       b.least = -most - before, b.most = most - before;
     }
     if (load == motor) {

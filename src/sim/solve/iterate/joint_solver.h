@@ -87,7 +87,8 @@ class JointSolver final : public System {
   void forget_places() { placed_at_.assign(std::size_t(components()), -1.0); }
   /// What impacts have given bodies, the velocities of body_motion(), belongs to what iterations keep; of the
   /// components that `struck` has been asked for. After keep_row_speeds().
-  void keep_struck_speeds(const JointSolver& struck);
+  /// What ends, motors and friction have given until the last impact, of h s, they do not take back.
+  void keep_struck_speeds(const JointSolver& struck, double h);
   /// From here on iterations keep J v as it is at the present velocities, those of the free motion; or at
   /// zero.
   void keep_row_speeds();
@@ -392,8 +393,9 @@ class JointSolver final : public System {
     std::vector<JointResponse> ends;          // the first `count` are in use
     std::vector<std::pair<int, Load>> which;  // of each its block, and as what it holds
   };
-  std::vector<ReachedEnds> reached_;         // of components
-  std::vector<double> placed_at_;            // s, of components: when their rows are of; or negative
+  std::vector<ReachedEnds> reached_;  // of components
+  std::vector<double> left_;          // of components: what part of the substep is after their last impact
+  std::vector<double> placed_at_;     // s, of components: when their rows are of; or negative
   std::vector<std::vector<int>> with_ends_;  // blocks with ropes or limits, of components
   std::vector<char> floating_;               // components: whether nothing holds them to what does not move
   bool may_break_ = false;

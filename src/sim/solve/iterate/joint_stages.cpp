@@ -541,6 +541,7 @@ void JointSolver<D>::find_end_forces(const State<D>& state, double t) {
 template <int D>
 void JointSolver<D>::keep_row_speeds() {
   for (ReachedEnds& ends : reached_) ends.known = false;
+  left_.assign(std::size_t(components()), 1.0);
   holds_.assign(model_.joints.size(), {});
   for (std::size_t r = 0; r < rows_.size(); ++r) targets_[r] = speed(rows_[r], at_);
   for (const int k : bounded_blocks_) {
@@ -564,9 +565,15 @@ void JointSolver<D>::keep_row_speeds() {
 }
 
 template <int D>
-void JointSolver<D>::keep_struck_speeds(const JointSolver& struck) {
+void JointSolver<D>::keep_struck_speeds(const JointSolver& struck, double h) {
   for (int component = 0; component < components(); ++component) {
-    if (struck.placed_at_[std::size_t(component)] < 0) continue;
+    const double placed_at = struck.placed_at_[std::size_t(component)];
+    const auto stays = [&](int body) {
+      return at_[std::size_t(body)].v.isZero(0) && at_[std::size_t(body)].w.isZero(0);
+    };
+    const std::span<const int> its = members(component);
+    if (placed_at < 0 || std::all_of(its.begin(), its.end(), stays)) continue;
+    left_[std::size_t(component)] = 1 - placed_at / h;
     each_row(component, [&](int, int r) { targets_[std::size_t(r)] += speed(rows_[std::size_t(r)], at_); });
     // an end that has been struck may leave, but is not pulled back
     for (const int block : with_ends_[std::size_t(component)]) {
@@ -586,7 +593,7 @@ void JointSolver<D>::keep_struck_speeds(const JointSolver& struck) {
   template void JointSolver<D>::rates(double, std::span<const double>, std::span<const double>,              \
                                       std::span<double>, std::span<double>);                                 \
   template void JointSolver<D>::keep_row_speeds();                                                           \
-  template void JointSolver<D>::keep_struck_speeds(const JointSolver<D>&)
+  template void JointSolver<D>::keep_struck_speeds(const JointSolver<D>&, double)
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);
 #undef OBSCURA_INSTANTIATE

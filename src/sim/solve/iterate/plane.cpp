@@ -257,7 +257,7 @@ void PlaneIterative::resolve_impacts(StepPart<D> part) {
   const int endless = impacts_.run(fast_, pairs_.all(), batches_, poses_, middle_, old_, dv_, moving_,
                                    constants_, joints_, struck_joints_);
   if (endless >= 0) end_of_impacts(model_.bodies[endless].name, part.t, part.h);
-  end_struck_joints([&](int body) {
+  end_struck_joints(part.h, [&](int body) {
     const Motion given = impacts_.given(body);
     return Twist<D>{spin(given), velocity(given)};
   });

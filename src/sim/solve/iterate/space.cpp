@@ -495,8 +495,8 @@ void SpaceIterative::place(State<D>& state, double h) {
     if (inactive_[i]) return;
     const PointBody<D>& m = moving_[i];
     const bool closing = closing_[i] && when_[i] < 0;
-    // how long it moves with what the iterations changed: all of the step in the mean, or since its impact
-    const double with = strikes_[i] < h ? h - strikes_[i] : 0.5 * h;
+    // how long it moves with what the iterations changed: all of the step in the mean, or since an impact
+    const double with = strikes_[i] < h ? h - strikes_[i] : 0.5 * (h - std::max(0.0, when_[i]));
     if (closing) {
       state.x[i] = x_[i] + h * m.v;
     } else {

@@ -208,6 +208,7 @@ class SpaceIterative final : public Iterative<3> {
   bool locked(const ContactConstraint& touch);
   void build_impact_rows(double t, double h);
   bool solve_impact(double t, double h, std::vector<double>& work);
+  void hold_until(double t);
   // act(body) for what moves of a side of a touch, and for all that hangs together with it on joints
   template <class Act>
   void each_tied(int body, Act&& act) const {
@@ -328,6 +329,7 @@ class SpaceIterative final : public Iterative<3> {
   std::vector<double> given_;                       // by the contacts of each island, J
   bool struck_ = false;                             // whether any body had an impact in this step
   std::vector<double> when_;                        // bodies: s, their last impact in it; or -1
+  std::vector<double> rested_since_;                // bodies: s, the one before, or the beginning
   std::vector<Flown> borne_ends_;                   // of bodies on joints, with what contacts give
   std::vector<Flown> flown_;                        // after it, or as the step began
   mutable std::vector<Course> courses_;

@@ -180,7 +180,10 @@ bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work)
   for (const int i : meets_) {
     for (const int side : {touches_[i].a, touches_[i].b}) {
       each_tied(side, [&](int body) {
-        if (when_[body] != t) flown_[body] = flown(body, t, h), when_[body] = t;
+        if (when_[body] != t) {
+          flown_[body] = flown(body, t, h);
+          rested_since_[body] = std::max(0.0, when_[body]), when_[body] = t;
+        }
         courses_[body].forget();  // also of a second impact in this instant
       });
     }
@@ -215,12 +218,31 @@ bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work)
                     it.v += dv, it.w += p * spin;
                   });
   }
+  hold_until(t);
   const double gives =
       struck_ends_.apply(struck_joints_, instant_, [&](int body, const Vec<D>& dv, const AngularVec<D>& dw) {
         flown_[body].stance.v += dv, flown_[body].stance.w += dw;
       });
   if (!carries_.empty() && !work.empty()) work[0] += gives;
   return true;
+}
+
+// What rested until an impact has not fallen before it, as its flight has: what held it did so all the time.
+// What only came to rest then turned before, and has turned.
+void SpaceIterative::hold_until(double t) {
+  const auto hold = [&](int body, const Vec<D>& dv) {
+    flown_[body].stance.x += 0.5 * (t - rested_since_[body]) * dv;
+  };
+  for (int i = 0; i < int(impact_rows_.size()); ++i) {
+    const double p = instant_.rested()[i];
+    if (p == 0) continue;
+    if (impact_tied_)
+      struck_joints_.each_push(tied_responses_[i], p,
+                               [&](int body, const Vec<D>& dv, const AngularVec<D>&) { hold(body, dv); });
+    else
+      each_response(impact_rows_[i], impact_responses_[i], p,
+                    [&](int body, const Vec<D>& dv, const AngularVec<D>&, double) { hold(body, dv); });
+  }
 }
 
 // Adds the step's impacts to the positions without contacts, and leaves the rest to the iterations of the
@@ -230,7 +252,7 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
   const double h = step.h;
   const int n = int(model_.bodies.size());
   struck_ = false;
-  when_.assign(n + 1, -1), due_.clear();
+  when_.assign(n + 1, -1), rested_since_.assign(n + 1, 0), due_.clear();
   const auto fast = [&](int i) { return most_passing(touches_[i]) >= restitution_threshold_; };
   std::atomic<bool> any = false;
   each(workers(), int(touches_.size()), kTouchPiece, [&](int begin, int end) {
@@ -310,7 +332,7 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
         target_after_impacts(touch.apart, {at.now.value, at.speed}, kTogether * bounding_radius_[touch.a],
                              -restitution_threshold_, left, h);
   }
-  end_struck_joints([&](int body) {
+  end_struck_joints(h, [&](int body) {
     Twist<D> given;
     if (when_[body] < 0) return given;
     const BodyMotion<D> end = flown(body, h, h).stance;
