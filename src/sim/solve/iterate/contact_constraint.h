@@ -19,23 +19,23 @@ struct ContactConstraint {
   Vec<D> impact_impulse = Vec<D>::Zero();   // N s, of impacts within the substep
   Vec<D> before = Vec<D>::Zero();           // N: the force of the last substep
   Vec<D> belt = Vec<D>::Zero();             // m/s: what belts add to the slip of a against b
-  Vec<D> drift = Vec<D>::Zero();  // m/s: what arms that turn within the substep add to it at its end
-  Vec<D> leads = Vec<D>::Zero();  // m/s: of what slides on, half of what its slip changes by in the substep
-  int renewals = 0;               // of its features, since the substep began
-  double apart = 0;               // m/s: of that, what its row is faster than its matter was where the
-                                  // last impact of its bodies left it
-  bool after = false;             // of a body that had an impact
-  bool rests = false;             // there it hardly closes or parts after it
-  bool passes = false;            // however it looks, it does not close with an impact
-  bool bounces = false;           // an impact that is left to the iterations
-  bool closing = false;           // slowly
-  bool slides = false;            // and goes on to
-  bool blow = false;              // it closes fast
-  double closes = 0;              // when it bounces, s from the start of the substep
+  Vec<D> drift = Vec<D>::Zero();        // m/s: what arms that turn within the substep add to it at its end
+  Vec<D> half_change = Vec<D>::Zero();  // m/s: of what slides on, half of what changes in its slip
+  int renewals = 0;                     // of its features, since the substep began
+  double apart = 0;                     // m/s: of that, what its row is faster than its matter was where the
+                                        // last impact of its bodies left it
+  bool after = false;                   // of a body that had an impact
+  bool rests = false;                   // there it hardly closes or parts after it
+  bool passes = false;                  // however it looks, it does not close with an impact
+  bool bounces = false;                 // an impact that is left to the iterations
+  bool closing = false;                 // slowly
+  bool slides = false;                  // and goes on to
+  bool blow = false;                    // it closes fast
+  double closes = 0;                    // when it bounces, s from the start of the substep
 
   /// m/s: what is to be added to the speeds of its bodies at the end of the substep for the slip that
   /// friction is against: that at its end, or of what slides on in its middle.
-  Vec<D> surface() const { return belt + drift - leads; }
+  Vec<D> surface() const { return belt + drift - half_change; }
 };
 
 }  // namespace obscura::sim

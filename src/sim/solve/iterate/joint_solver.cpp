@@ -405,50 +405,6 @@ double JointSolver<D>::effective_mass(const JointResponse& b) const {
   return with_joints > kLocked * own ? 1 / with_joints : 0;
 }
 
-template <int D>
-std::span<const typename JointSolver<D>::JointResponse> JointSolver<D>::reached_ends(int component) {
-  if (component < 0 || with_ends_[std::size_t(component)].empty()) return {};
-  ReachedEnds& its = reached_[std::size_t(component)];
-  if (!its.known) find_reached_ends(component);
-  return {its.ends.data(), std::size_t(its.count)};
-}
-
-template <int D>
-void JointSolver<D>::find_reached_ends(int component) {
-  ReachedEnds& its = reached_[std::size_t(component)];
-  its.known = true, its.count = 0, its.which.clear();
-  for (const int block : with_ends_[std::size_t(component)]) {
-    const int number = held_[std::size_t(block)];
-    const Joint<D>& joint = model_.joints[std::size_t(number)];
-    for (const Load load : {lower, upper}) {
-      const bool has = one_sided(joint) ? load == upper
-                       : load == lower  ? joint.lower > -1e299
-                                        : joint.upper < 1e299;
-      if (!has) continue;
-      if (holds_[std::size_t(number)].load != load && left(number, load) > kTaut * size(number)) continue;
-      if (its.count == int(its.ends.size())) its.ends.emplace_back();
-      JointResponse& end = its.ends[std::size_t(its.count)];
-      bounded_row(block, load, end.row);
-      compute_response(end);
-      if (!(effective_mass(end) > 0)) continue;
-      ++its.count, its.which.emplace_back(block, load);
-    }
-  }
-}
-
-// the ends that another solver has reached, where bodies stand here
-template <int D>
-void JointSolver<D>::take_ends(const JointSolver& begun, int component, int count) {
-  ReachedEnds& its = reached_[std::size_t(component)];
-  its.known = true, its.count = count;
-  if (int(its.ends.size()) < count) its.ends.resize(std::size_t(count));
-  for (int i = 0; i < count; ++i) {
-    const auto& [block, load] = begun.reached_[std::size_t(component)].which[std::size_t(i)];
-    bounded_row(block, load, its.ends[std::size_t(i)].row);
-    compute_response(its.ends[std::size_t(i)]);
-  }
-}
-
 // by components, and how they move each other
 template <int D>
 void JointSolver<D>::couple_bounded() {

@@ -564,36 +564,13 @@ void JointSolver<D>::keep_row_speeds() {
   }
 }
 
-template <int D>
-void JointSolver<D>::keep_struck_speeds(const JointSolver& struck, double h) {
-  for (int component = 0; component < components(); ++component) {
-    const double placed_at = struck.placed_at_[std::size_t(component)];
-    const auto stays = [&](int body) {
-      return at_[std::size_t(body)].v.isZero(0) && at_[std::size_t(body)].w.isZero(0);
-    };
-    const std::span<const int> its = members(component);
-    if (placed_at < 0 || std::all_of(its.begin(), its.end(), stays)) continue;
-    left_[std::size_t(component)] = 1 - placed_at / h;
-    each_row(component, [&](int, int r) { targets_[std::size_t(r)] += speed(rows_[std::size_t(r)], at_); });
-    // an end that has been struck may leave, but is not pulled back
-    for (const int block : with_ends_[std::size_t(component)]) {
-      Hold& hold = holds_[std::size_t(held_[std::size_t(block)])];
-      if (hold.load != lower && hold.load != upper) continue;
-      Row<D> row;
-      bounded_row(block, hold.load, row);
-      hold.target += std::min(speed(row, at_), 0.0);
-    }
-  }
-}
-
 #define OBSCURA_INSTANTIATE(D)                                                                               \
   template double JointSolver<D>::step(ForwardDynamics<D>&, Integrate*, State<D>&, double, double, Stages&); \
   template void JointSolver<D>::loosen_all();                                                                \
   template void JointSolver<D>::find_end_forces(const State<D>&, double);                                    \
   template void JointSolver<D>::rates(double, std::span<const double>, std::span<const double>,              \
                                       std::span<double>, std::span<double>);                                 \
-  template void JointSolver<D>::keep_row_speeds();                                                           \
-  template void JointSolver<D>::keep_struck_speeds(const JointSolver<D>&, double)
+  template void JointSolver<D>::keep_row_speeds()
 OBSCURA_INSTANTIATE(2);
 OBSCURA_INSTANTIATE(3);
 #undef OBSCURA_INSTANTIATE

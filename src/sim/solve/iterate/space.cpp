@@ -270,7 +270,7 @@ void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
     }
   });
   each(workers(), count, kTouchPiece, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) lead(i);
+    for (int i = begin; i < end; ++i) foresee_slip(i);
   });
 }
 
@@ -308,7 +308,7 @@ void SpaceIterative::set_aims(int begin, int end, const State<D>& state, double 
     if (touch.slides) {
       free_slips_[i] = slip(touch);
       const Vec<D> changes = free_slips_[i] - touch.belt - passes;
-      touch.leads = 0.5 * (changes - touch.n * touch.n.dot(changes));
+      touch.half_change = 0.5 * (changes - touch.n * touch.n.dot(changes));
     }
     if (!known_one) continue;
     touch.before = known->force;

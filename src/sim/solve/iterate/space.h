@@ -243,9 +243,10 @@ class SpaceIterative final : public Iterative<3> {
   }
   Vec<D> belt(const ContactConstraint& touch) const;
   bool lasts(const ContactConstraint& touch, const Vec<D>& force) const;
+  bool rubs_fully(const ContactConstraint& touch, const Vec<D>& force) const;
   bool slides_on(const ContactConstraint& touch, const Vec<D>& force, const Vec<D>& passes, double h) const;
   bool strikes(const ContactConstraint& touch, const Vec<D>& passes) const;
-  void lead(int touch);
+  void foresee_slip(int touch);
   void center(int touch, const State<D>& state, double h, bool bears);
   void find_bearing(const State<D>& state, double h);
   bool gives(int body) const {

@@ -13,9 +13,8 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kLasts = 2;        // times what it was before: a force that is more was of a blow
-constexpr double kSliding = 0.999;  // of the square of what friction can: more slides
-constexpr double kMoves = 4;        // of what a push moves a centre by, how far it moves what is pushed
+constexpr double kLasts = 2;  // times what it was before: a force that is more was of a blow
+constexpr double kMoves = 4;  // of what a push moves a centre by, how far it moves what is pushed
 
 Vec<3> lasting(const Contact<3>& contact) {
   const double now = contact.force.squaredNorm(), before = kLasts * kLasts * contact.before.squaredNorm();
@@ -43,7 +42,7 @@ void SpaceIterative::find_bearing(const State<D>& state, double h) {
     contact.begin(stances_[std::size_t(touch.a)]);
     const double pressed = touch.n.dot(contact.force);
     const Vec<D> rubs = contact.force - pressed * touch.n;
-    contact.slides = rubs.squaredNorm() > kSliding * touch.mu * touch.mu * pressed * pressed;
+    contact.slides = rubs_fully(touch, contact.force);
     for (const int body : {touch.a, touch.b})
       rubbed_[std::size_t(body)] += moving_[body].inverse_mass * std::sqrt(rubs.squaredNorm());
     bearing_touches_.push_back(int(i));

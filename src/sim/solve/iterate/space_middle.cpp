@@ -15,7 +15,7 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kSlidingShare = 0.999;  // of the square of what friction can: more slides
+constexpr double kAllFriction = 0.999;  // of the square of what friction can: more is all of it
 constexpr double kAnswers =
     8;  // of what a push moves a body by at its centre, how far it moves what is pushed
 constexpr double kMostAskew = 0.5;  // the cosine by which a normal turns in half a substep, at most
@@ -34,14 +34,20 @@ bool SpaceIterative::lasts(const ContactConstraint& touch, const Vec<D>& force) 
   return -touch.n.dot(passes) <= kLasting * speed;
 }
 
+// whether a force has all the friction that it can: then a touch slides, or is about to
+bool SpaceIterative::rubs_fully(const ContactConstraint& touch, const Vec<D>& force) const {
+  const double pressed = touch.n.dot(force), most = touch.mu * pressed;
+  return (force - pressed * touch.n).squaredNorm() > kAllFriction * most * most;
+}
+
 // Whether what bears and slides, and passes like that where the substep begins, slides to its end: friction
 // is then against its way, which is that of the middle. What stages of the free motion have of friction is
 // taken out of these as it is at the end.
 bool SpaceIterative::slides_on(const ContactConstraint& touch, const Vec<D>& force, const Vec<D>& passes,
                                double h) const {
   if (touch.mu == 0 || (varies_ && bears(touch.a, touch.b))) return false;
-  const double pressed = touch.n.dot(force), most = touch.mu * pressed;
-  if ((force - pressed * touch.n).squaredNorm() < kSlidingShare * most * most) return false;
+  if (!rubs_fully(touch, force)) return false;
+  const double most = touch.mu * touch.n.dot(force);
   const double stops = kAnswers * h * most * (moving_[touch.a].inverse_mass + moving_[touch.b].inverse_mass);
   const Vec<D> slips = passes + touch.belt;
   return (slips - touch.n * touch.n.dot(slips)).squaredNorm() > stops * stops;
@@ -50,15 +56,15 @@ bool SpaceIterative::slides_on(const ContactConstraint& touch, const Vec<D>& for
 // What the forces that contacts had last change of its slip across their friction, beside what free motion
 // and the way rows turn do. What friction changes along itself turns nothing; and of what is on joints these
 // forces are no guess, as joints answer them.
-void SpaceIterative::lead(int number) {
+void SpaceIterative::foresee_slip(int number) {
   ContactConstraint& touch = touches_[std::size_t(number)];
   const double rubs = touch.tangent_impulse.squaredNorm();
   if (!touch.slides || !(rubs > 0)) return;
   const auto tied = [&](int body) { return body < int(model_.bodies.size()) && joints_.has(body); };
   if (tied(touch.a) || tied(touch.b)) return;
   const Vec<D> changes = slip(touch) - free_slips_[std::size_t(number)];
-  touch.leads += 0.5 * (changes - touch.n * touch.n.dot(changes) -
-                        touch.tangent_impulse * (touch.tangent_impulse.dot(changes) / rubs));
+  touch.half_change += 0.5 * (changes - touch.n * touch.n.dot(changes) -
+                              touch.tangent_impulse * (touch.tangent_impulse.dot(changes) / rubs));
 }
 
 // Whether a blow, that is left to the iterations or has been, changes by much how fast a's matter passes b's:

@@ -101,12 +101,15 @@ inline double closed_up_to(double bounding_radius, double least_gap) {
   return bounding_radius * std::clamp(kErrors * -least_gap / bounding_radius, kTogether, kDeep);
 }
 
+/// Of many, one in so many rules nothing: a heap of a thousand is not divided as finely as its fastest pair,
+/// or its narrowest body, asks for.
+inline constexpr std::size_t kOneOf = 200;
+
 /// The closing rate that says how many substeps a step has, 1/s: of many contact points the largest but for a
 /// two-hundredth of them, which may close twice as fast, so that a heap of a thousand is not divided as
 /// finely as its fastest pair asks for. `rates`: of the points that close; they are reordered. `contacts`:
 /// how many points touch or nearly do.
 inline double ruling_rate(std::span<double> rates, std::size_t contacts) {
-  constexpr std::size_t kOneOf = 200;
   constexpr double kFaster = 2;
   const std::size_t fastest = contacts / kOneOf;
   if (rates.empty()) return 0;
@@ -124,7 +127,6 @@ inline double ruling_rate(std::span<double> rates, std::size_t contacts) {
 template <int D>
 double resting_substeps(const Model<D>& model) {
   constexpr double kSinks = 50;
-  constexpr std::size_t kOneOf = 200;
   std::vector<double> widths;
   for (const Body<D>& body : model.bodies)
     if (!body.fixed && !is_point(body.shape)) widths.push_back(2 * half_thickness(body.shape));
