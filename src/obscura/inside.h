@@ -38,6 +38,13 @@ class Work {
   std::atomic<bool>& going_;
 };
 
+/// What an object of the interface holds. Throws UsageError where it was moved into another.
+template <class Inside>
+Inside& held(const std::unique_ptr<Inside>& inside, const char* what) {
+  if (!inside) throw UsageError(std::string(what) + " was moved into another");
+  return *inside;
+}
+
 struct World::Inside {
   Inside(const Scene& of, int threads);
   Work work() const { return {going, "this World"}; }

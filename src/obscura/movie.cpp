@@ -77,9 +77,11 @@ Movie::~Movie() {
   if (inside_ && ::getpid() != inside_->process) (void)inside_.release();
 }
 
+Movie::Inside& Movie::inside() const { return held(inside_, "this Movie"); }
+
 void Movie::add(const Frame& frame) {
   guarded([&] {
-    Inside& it = *inside_;
+    Inside& it = inside();
     it.refuse_fork();
     const Work here = it.work();
     if (!it.writer) throw UsageError(it.path + ": is closed");
@@ -99,11 +101,11 @@ void Movie::add(const Frame& frame) {
   });
 }
 
-std::int64_t Movie::frames() const { return inside_->frames; }
+std::int64_t Movie::frames() const { return inside().frames; }
 
 void Movie::close() {
   guarded([&] {
-    Inside& it = *inside_;
+    Inside& it = inside();
     it.refuse_fork();
     const Work here = it.work();
     if (!it.writer) return;

@@ -22,8 +22,8 @@
 ///
 /// Everything that fails throws an Error of one of the kinds below. Objects of one kind may be used in
 /// several threads at once, each object by one thread at a time: a World, Renderer or Movie that is at work
-/// throws UsageError to another thread, and to a force that asks its own world. After fork() a child may use
-/// scenes and worlds of its parent; a Renderer or Movie it makes itself.
+/// throws UsageError to another thread, and to a force that asks its own world. So does one that was moved into
+/// another. After fork() a child may use scenes and worlds of its parent; a Renderer or Movie it makes itself.
 
 /// \example film.cpp
 /// A film, frame by frame.
@@ -225,6 +225,8 @@ class Scene {
 
   struct Inside;  // the library's own
   explicit Scene(std::shared_ptr<const Inside> inside) : inside_(std::move(inside)) {}
+  Scene(const Scene&) = default;  // and so it moves: what is moved from is still a scene
+  Scene& operator=(const Scene&) = default;
   const Inside& inside() const { return *inside_; }
 
  private:
@@ -340,7 +342,7 @@ class World {
   std::string hash() const;
 
   struct Inside;
-  const Inside& inside() const { return *inside_; }
+  Inside& inside() const;
 
  private:
   std::unique_ptr<Inside> inside_;
@@ -400,6 +402,7 @@ class Renderer {
 
  private:
   struct Inside;
+  Inside& inside() const;
   std::unique_ptr<Inside> inside_;
 };
 
@@ -428,6 +431,7 @@ class Movie {
 
  private:
   struct Inside;
+  Inside& inside() const;
   std::unique_ptr<Inside> inside_;
 };
 

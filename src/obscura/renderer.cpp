@@ -64,15 +64,17 @@ Renderer::~Renderer() {
   if (inside_ && ::getpid() != inside_->process) (void)inside_.release();
 }
 
-int Renderer::width() const { return inside_->film.scene.film.width; }
-int Renderer::height() const { return inside_->film.scene.film.height; }
-double Renderer::fps() const { return sim::value(inside_->film.scene.film.fps); }
-std::string Renderer::fps_text() const { return sim::text(inside_->film.scene.film.fps); }
-std::int64_t Renderer::frames() const { return inside_->film.shots.size(); }
+Renderer::Inside& Renderer::inside() const { return held(inside_, "this Renderer"); }
+
+int Renderer::width() const { return inside().film.scene.film.width; }
+int Renderer::height() const { return inside().film.scene.film.height; }
+double Renderer::fps() const { return sim::value(inside().film.scene.film.fps); }
+std::string Renderer::fps_text() const { return sim::text(inside().film.scene.film.fps); }
+std::int64_t Renderer::frames() const { return inside().film.shots.size(); }
 
 std::optional<Frame> Renderer::next() {
   return guarded([&]() -> std::optional<Frame> {
-    Inside& it = *inside_;
+    Inside& it = inside();
     it.refuse_fork();
     const Work here = it.work();
     if (!it.simulation)
@@ -89,8 +91,8 @@ std::optional<Frame> Renderer::next() {
 }
 
 void Renderer::rewind() {
-  const Work here = inside_->work();
-  inside_->simulation.reset();
+  const Work here = inside().work();
+  inside().simulation.reset();
 }
 
 // from the state before the last one's, where that is not too late
@@ -114,15 +116,15 @@ Frame Renderer::Inside::at(sim::Rational t) {
 
 Frame Renderer::at(double t) {
   return guarded([&] {
-    inside_->refuse_fork();
-    const Work here = inside_->work();
-    return inside_->at(exact(t, "t"));
+    inside().refuse_fork();
+    const Work here = inside().work();
+    return inside().at(exact(t, "t"));
   });
 }
 
 Frame Renderer::draw(const World& world) {
   return guarded([&] {
-    Inside& it = *inside_;
+    Inside& it = inside();
     it.refuse_fork();
     const Work here = it.work();
     if (it.ahead.runs) throw UsageError("a film of several runs (film.vary) shows its own: next() or at()");
@@ -142,8 +144,8 @@ Frame Renderer::draw(const World& world) {
 }
 
 std::vector<std::uint8_t> Renderer::take(std::vector<std::uint8_t> memory) {
-  const Work here = inside_->work();
-  return std::exchange(inside_->image.pixels, std::move(memory));
+  const Work here = inside().work();
+  return std::exchange(inside().image.pixels, std::move(memory));
 }
 
 std::vector<std::uint8_t> png(const Frame& frame, bool transparent) {

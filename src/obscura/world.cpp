@@ -110,22 +110,32 @@ World::World(const Scene& scene, int threads)
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
+World::Inside& World::inside() const { return held(inside_, "this World"); }
 
-const Scene& World::scene() const { return inside_->scene; }
-double World::time() const { return sim::value(inside_->run->now()); }
-std::int64_t World::steps() const { return sim::floor(inside_->run->now() * inside_->run->rate()); }
-double World::step_length() const { return 1 / sim::value(inside_->run->rate()); }
+namespace {
+
+sim::Rational now(const World::Inside& inside) {
+  const Work here = inside.work();
+  return inside.run->now();
+}
+
+}  // namespace
+
+const Scene& World::scene() const { return inside().scene; }
+double World::time() const { return sim::value(now(inside())); }
+std::int64_t World::steps() const { return sim::floor(now(inside()) * inside().run->rate()); }
+double World::step_length() const { return 1 / sim::value(inside().run->rate()); }
 
 void World::step(std::int64_t count) {
   if (count < 0) throw UsageError(fmt::format("step({}): a world goes on; restore() goes back", count));
   const std::int64_t most = std::numeric_limits<std::int64_t>::max() - steps();
-  guarded([&] { inside_->go(steps() + std::min(count, most)); });
+  guarded([&] { inside().go(steps() + std::min(count, most)); });
 }
 
 void World::step_to(double t) {
   if (!std::isfinite(t)) throw UsageError("step_to: the time is not finite");
   const auto step = std::int64_t(std::llround(std::clamp(t / step_length(), -9e15, 9e15)));
-  if (step > steps()) guarded([&] { inside_->go(step); });
+  if (step > steps()) guarded([&] { inside().go(step); });
 }
 
 int World::body(std::string_view name) const {
@@ -139,10 +149,19 @@ int World::body(std::string_view name) const {
       fmt::format("no body is called {}{}", scene::quoted(name), scene::did_you_mean(name, names)));
 }
 
-Columns World::positions() const { return view(inside_->run->columns().x); }
-Columns World::velocities() const { return view(inside_->run->columns().v); }
-Columns World::turns() const { return view(inside_->run->columns().turn); }
-Columns World::spins() const { return view(inside_->run->columns().spin); }
+namespace {
+
+sim::BodyColumns columns(const World::Inside& inside) {
+  const Work here = inside.work();
+  return inside.run->columns();
+}
+
+}  // namespace
+
+Columns World::positions() const { return view(columns(inside()).x); }
+Columns World::velocities() const { return view(columns(inside()).v); }
+Columns World::turns() const { return view(columns(inside()).turn); }
+Columns World::spins() const { return view(columns(inside()).spin); }
 int World::first_turning() const { return int(scene().bodies().size() - turns().rows); }
 
 namespace {
@@ -163,19 +182,19 @@ std::span<const double> all_of(std::span<const double> given, const Columns& the
 }  // namespace
 
 void World::set_positions(std::span<const double> all) {
-  set(*inside_, {.x = all_of(all, positions(), "positions")});
+  set(inside(), {.x = all_of(all, positions(), "positions")});
 }
 void World::set_velocities(std::span<const double> all) {
-  set(*inside_, {.v = all_of(all, velocities(), "velocities")});
+  set(inside(), {.v = all_of(all, velocities(), "velocities")});
 }
-void World::set_turns(std::span<const double> all) { set(*inside_, {.turn = all_of(all, turns(), "turns")}); }
-void World::set_spins(std::span<const double> all) { set(*inside_, {.spin = all_of(all, spins(), "spins")}); }
+void World::set_turns(std::span<const double> all) { set(inside(), {.turn = all_of(all, turns(), "turns")}); }
+void World::set_spins(std::span<const double> all) { set(inside(), {.spin = all_of(all, spins(), "spins")}); }
 
 double World::read(std::string_view quantity) const {
-  const auto& all = inside_->columns;
+  const auto& all = inside().columns;
   const auto found = std::find_if(all.begin(), all.end(),
                                   [&](const app::Column& column) { return column.name == quantity; });
-  if (found != all.end()) return guarded([&] { return found->read(inside_->now()); });
+  if (found != all.end()) return guarded([&] { return found->read(inside().now()); });
   std::vector<std::string_view> names;
   for (const app::Column& column : all) names.push_back(column.name);
   throw UsageError(
@@ -184,18 +203,18 @@ double World::read(std::string_view quantity) const {
 
 std::vector<std::string> World::quantities() const {
   std::vector<std::string> names;
-  for (const app::Column& column : inside_->columns) names.push_back(column.name);
+  for (const app::Column& column : inside().columns) names.push_back(column.name);
   return names;
 }
 
 Energies World::energies() const {
-  const sim::Energies e = guarded([&] { return inside_->now().energies; });
+  const sim::Energies e = guarded([&] { return inside().now().energies; });
   return {e.kinetic, e.gravity, e.springs, e.fields, e.work, e.total()};
 }
 
 std::vector<Contact> World::contacts() const {
   std::vector<Contact> all;
-  for (const sim::Snapshot::Contact& each : guarded([&] { return inside_->now(); }).contacts) {
+  for (const sim::Snapshot::Contact& each : guarded([&] { return inside().now(); }).contacts) {
     Contact& it = all.emplace_back();
     it.body = each.body, it.other = each.other, it.wall = each.wall;
     copy(each.point, it.point), copy(each.normal, it.normal);
@@ -209,41 +228,41 @@ std::vector<Contact> World::contacts() const {
 }
 
 ContactChanges World::contact_changes() {
-  std::vector<Pair> now = guarded([&] { return inside_->touching(); });
+  std::vector<Pair> now = guarded([&] { return inside().touching(); });
   ContactChanges changes;
-  const std::vector<Pair>& before = inside_->touched;
+  const std::vector<Pair>& before = inside().touched;
   std::set_difference(now.begin(), now.end(), before.begin(), before.end(),
                       std::back_inserter(changes.began));
   std::set_difference(before.begin(), before.end(), now.begin(), now.end(),
                       std::back_inserter(changes.ended));
-  inside_->touched = std::move(now);
+  inside().touched = std::move(now);
   return changes;
 }
 
 std::vector<Event> World::events() const {
-  const Work here = inside_->work();
+  const Work here = inside().work();
   std::vector<Event> all;
-  for (const sim::RunEvent& each : inside_->run->events())
+  for (const sim::RunEvent& each : inside().run->events())
     all.push_back({sim::value(each.time), each.name, each.what, each.of, each.marks, each.stop});
   return all;
 }
 
 State World::save() const {
-  const Work here = inside_->work();
-  return {inside_->run->saved()};
+  const Work here = inside().work();
+  return {inside().run->saved()};
 }
 
 void World::restore(const State& state) {
-  const Work here = inside_->work();
-  if (!inside_->run->restore(state.words))
+  const Work here = inside().work();
+  if (!inside().run->restore(state.words))
     throw UsageError("restore: this is no state of a world of this scene");
-  if (inside_->trail > 0) (void)inside_->run->take_track();
-  inside_->ways.clear();
+  if (inside().trail > 0) (void)inside().run->take_track();
+  inside().ways.clear();
 }
 
 std::string World::hash() const {
-  const Work here = inside_->work();
-  return app::state_hash(inside_->run->words());
+  const Work here = inside().work();
+  return app::state_hash(inside().run->words());
 }
 
 }  // namespace obscura

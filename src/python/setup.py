@@ -44,7 +44,8 @@ class Build(build_ext):
         subprocess.check_call(["cmake", "--build", folder, "--target", "obscura_python"])
         target = Path(self.get_ext_fullpath(extension.name))
         target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(next((folder / "python/obscura").glob("_obscura*.so")), target)
+        for made in (next((folder / "python/obscura").glob("_obscura*.so")), folder / "python/obscura/_keys.pyi"):
+            shutil.copy2(made, target.parent / (target.name if made.suffix == ".so" else made.name))
 
 
 setup(

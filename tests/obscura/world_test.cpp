@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <map>
 #include <semaphore>
@@ -279,20 +280,60 @@ TEST(World, ThatIsAtWorkRefusesAnotherThread) {
 
 TEST(World, RefusesAForceThatAsksIt) {
   World* its = nullptr;
+  std::function<void(World&)> asks;
   const Scene scene = balls(1, 100).with_force("itself", [&](const Stage&, const Push&) {
-    if (its) its->step();
+    if (its) asks(*its);
   });
   World world(scene);
   its = &world;
-  try {
-    world.step();
-    FAIL();
-  } catch (const UsageError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("at work"));
+  const std::vector<std::function<void(World&)>> all = {[](World& it) { it.step(); },
+                                                        [](World& it) { (void)it.time(); },
+                                                        [](World& it) { (void)it.steps(); },
+                                                        [](World& it) { (void)it.positions(); },
+                                                        [](World& it) { (void)it.spins(); },
+                                                        [](World& it) { (void)it.energies(); },
+                                                        [](World& it) {
+                                                          it.set_velocities(std::vector<double>{0, 0});
+                                                        }};
+  for (const auto& one : all) {
+    asks = one;
+    try {
+      world.step();
+      FAIL();
+    } catch (const UsageError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("at work"));
+    }
+    EXPECT_EQ(world.steps(), 0);
   }
-  EXPECT_EQ(world.steps(), 0);
   its = nullptr;
   world.step();
+}
+
+TEST(World, ThatWasMovedIntoAnotherSaysSo) {
+  World world(balls(1, 100));
+  World other(std::move(world));
+  other.step();
+  const auto refuses = [](auto&& act) {
+    try {
+      act();
+      FAIL();
+    } catch (const UsageError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("this World was moved into another"));
+    }
+  };
+  // NOLINTBEGIN(bugprone-use-after-move): what is tried
+  refuses([&] { world.step(); });
+  refuses([&] { (void)world.time(); });
+  refuses([&] { (void)world.scene(); });
+  refuses([&] { (void)world.positions(); });
+  refuses([&] { (void)world.save(); });
+  world = std::move(other);
+  EXPECT_EQ(world.steps(), 1);
+  // a scene is copied
+  Scene scene = balls(1, 100);
+  const Scene moved = std::move(scene);
+  EXPECT_EQ(scene.hash(), moved.hash());
+  // NOLINTEND(bugprone-use-after-move)
 }
 
 TEST(World, TakesAStateOfOtherValuesButNotOfAnotherMake) {

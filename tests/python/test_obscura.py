@@ -600,6 +600,19 @@ def test_stubs_name_what_there_is():
         assert there <= told | inherited(stub, body), (name, there - told)
 
 
+def test_editors_know_the_keys_of_scenes():
+    stub = (Path(obscura.__file__).parent / "_keys.pyi").read_text()
+    of = {name: body for name, body in re.findall(r"^class (\w+):\n((?:    .*\n)*)", stub, re.M)}
+    assert "    radius: float | Sequence[float] | dict[str, Any]\n" in of["Ball"] and "    ball: Kind[Ball]\n" in of["Keys"]
+    for key in obscura.schema()["properties"]:
+        assert f"    {key}: " in of["Keys"], key
+    jedi = pytest.importorskip("jedi")
+    begun = "import obscura\nscene = obscura.Scene('a.toml')\n"
+    for line, key in {"scene.dur": "duration", "scene.room.gra": "gravity", "scene.ball[0].rad": "radius",
+                      "scene.film.fp": "fps"}.items():
+        assert key in [each.name for each in jedi.Script(begun + line).complete()], line
+
+
 def inherited(stub, body):
     found = re.match(r"class \w+\((\w+)", body)
     if not found or not (base := re.search(rf"^class {found.group(1)}\b.*?(?=^\S|\Z)", stub, re.M | re.S)):

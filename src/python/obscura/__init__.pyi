@@ -4,6 +4,8 @@ from typing import Any, Callable, Iterable, Iterator, Mapping, Sequence
 import numpy
 from numpy.typing import ArrayLike, NDArray
 
+from ._keys import Keys
+
 __version__: str
 
 class Error(Exception): ...
@@ -106,7 +108,7 @@ class Figure:
 
 Force = Callable[[Stage], ArrayLike | tuple[ArrayLike, ArrayLike] | None]
 
-class Scene:
+class Scene(Keys):
     name: str
     text: str
     hash: str
@@ -117,8 +119,6 @@ class Scene:
                  name: str | None = None, **keys: Any) -> None: ...
     @classmethod
     def parse(cls, text: str, name: str = "scene.toml", sets: Sequence[str] = ()) -> Scene: ...
-    def __getattr__(self, key: str) -> Any: ...
-    def __setattr__(self, key: str, value: Any) -> None: ...
     def copy(self) -> Scene: ...
     def add_force(self, force: Force, name: str | None = None) -> None: ...
     def remove_force(self, name: str) -> None: ...
