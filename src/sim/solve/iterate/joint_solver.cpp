@@ -325,7 +325,8 @@ void JointSolver<D>::collect_bounded(double h) {
       const double off = left(i, load);
       const double sees = 4 * h * (std::fabs(speed(b.row, at_)) + g * h) + 1e-3 * model_.scale;
       if (off > sees) return;
-      b.least = -std::max(before, 0.0), b.most = kEndless, b.target = -std::max(off, 0.0) / h;
+      b.least = -std::max(before, 0.0), b.most = kEndless,
+      b.target = -std::max(off, 0.0) / h + hold.bends[load];
     } else {
       const double most = after * (load == motor ? joint.motor->most : joint.friction);
       b.least = -most - before, b.most = most - before;

@@ -40,7 +40,7 @@ constexpr double kSlower = 2;          // times what forces change in a step: it
 template <int D>
 double JointSolver<D>::step(ForwardDynamics<D>& dynamics, Integrate* integrate, State<D>& state, double t,
                             double h, Stages& stages) {
-  dynamics_ = &dynamics, begun_ = &state, stopped_ = false;
+  dynamics_ = &dynamics, begun_ = &state, stopped_ = false, span_ = h;
   set_poses(state, t);
   begin_motors();
   double given = 0;
@@ -251,9 +251,13 @@ double JointSolver<D>::excess(const Stop& stop, double t) {
   return rate - (stop.load == motor ? motors_.at(i, t, value, rate).speed : 0);
 }
 
+// where the step ends
 template <int D>
 void JointSolver<D>::note_excess(double t) {
-  for (Stop& stop : stops_) stop.excess = excess(stop, t);
+  for (Stop& stop : stops_) {
+    stop.excess = excess(stop, t);
+    if (stop.load <= upper) stop.ends = left(stop, t);
+  }
 }
 
 // how far a joint is from a stop at the poses and velocities at hand
@@ -285,9 +289,17 @@ bool JointSolver<D>::overrun(double t) {
     if (round && stop.left - now > kHalfTurn) continue;
     Row<D> row;
     bounded_row(stop.block, stop.load, row);
-    if (-stop.speed > kSlower * std::fabs(speed(row, at_) - stop.speed)) overrun_.push_back(i);
+    const double ends = speed(row, at_);
+    if (-stop.speed > kSlower * std::fabs(ends - stop.speed) || -ends > slow_end(joint))
+      overrun_.push_back(i);
   }
   return !overrun_.empty();
+}
+
+// m/s or rad/s: no faster comes to its end what only falls there
+template <int D>
+double JointSolver<D>::slow_end(int joint) const {
+  return kSlower * span_ * std::sqrt(model_.gravity.squaredNorm()) + kTaut * size(joint) / span_;
 }
 
 // of those, how far the farthest is from its end, in its size
@@ -541,6 +553,7 @@ void JointSolver<D>::find_end_forces(const State<D>& state, double t) {
 template <int D>
 void JointSolver<D>::keep_row_speeds() {
   for (ReachedEnds& ends : reached_) ends.known = false;
+  times_reached_.assign(2 * held_.size(), 0);
   left_.assign(std::size_t(components()), 1.0);
   holds_.assign(model_.joints.size(), {});
   for (std::size_t r = 0; r < rows_.size(); ++r) targets_[r] = speed(rows_[r], at_);
@@ -556,10 +569,14 @@ void JointSolver<D>::keep_row_speeds() {
     hold.given[acting.load] = 0.5 * (acting.first + acting.last);
   }
   for (const Stop& stop : stops_) {
-    if (stop.load <= upper) continue;
     Row<D> row;
     bounded_row(stop.block, stop.load, row);
     Hold& hold = holds_[std::size_t(held_[std::size_t(stop.block)])];
+    if (stop.load <= upper) {
+      const double way = stop.ends - left(stop, 0);
+      hold.bends[stop.load] = std::min(0.0, speed(row, at_) - way / span_);
+      continue;
+    }
     hold.knows = true, hold.aims[stop.load] = speed(row, at_) - stop.excess;
   }
 }

@@ -252,8 +252,28 @@ void PlaneIterative::moderate_warm_start() {
   }
 }
 
+// What forces that are no gravity make so fast within the substep that it may strike what it does not close
+// in on yet: the end of a whip, a shot of a spring.
+void PlaneIterative::find_whipped() {
+  for (int i = 0; i < int(model_.bodies.size()); ++i) {
+    const Motion& gain = dv_[std::size_t(i)];
+    if (!moves(i) ||
+        std::fabs(gain.x) + std::fabs(gain.y) + bounding_radius_[std::size_t(i)] * std::fabs(gain.w) <
+            restitution_threshold_)
+      continue;
+    for (const int number : impacts_.around(i)) {
+      const Pair& pair = pairs_.all()[std::size_t(number)];
+      const ContactBatch& g = batches_[std::size_t(pair.slot / kLanes)];
+      const int lane = pair.slot % kLanes;
+      // what bears goes on bearing
+      if (!(g.p[0][lane] > 0 || g.p[1][lane] > 0)) fast_.push_back(pair.slot);
+    }
+  }
+}
+
 void PlaneIterative::resolve_impacts(StepPart<D> part) {
   begin_struck_joints(part.state);
+  find_whipped();
   const int endless = impacts_.run(fast_, pairs_.all(), batches_, poses_, middle_, old_, dv_, moving_,
                                    constants_, joints_, struck_joints_);
   if (endless >= 0) end_of_impacts(model_.bodies[endless].name, part.t, part.h);

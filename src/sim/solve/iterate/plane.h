@@ -80,6 +80,7 @@ class PlaneIterative final : public Iterative<2> {
   void report_pair(const plane::Pair& pair, State<D>& state) const;
   void build_batches(const State<D>& state, bool known);
   void moderate_warm_start();
+  void find_whipped();
   void keep_forces(State<D>& state, bool last);
   void place_contacts(State<D>& state, bool all) const;
   bool update_batches(const State<D>& state);

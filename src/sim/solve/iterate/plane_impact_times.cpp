@@ -71,8 +71,14 @@ double Impacts::closing_guess(const Pair& pair, int k, const ContactBatch& g, co
   const Motion &a = at.a, &b = at.b, &gain_a = step.dv[g.a[lane]], &gain_b = step.dv[g.b[lane]];
   const TouchRow& r = at.rows[k];
   const double vn = normal_speed(r, a, b), gap = r.gap;
-  if (gap > g.sight[lane] || !(vn < g.impact_speed[lane])) return kNeverCloses;
   const double dvn = normal_speed(r, gain_a, gain_b), left = std::max(0.0, gap);
+  if (gap > g.sight[lane]) return kNeverCloses;
+  if (!(vn < g.impact_speed[lane])) {
+    // it may yet, by forces: gap + vn t + dvn t^2 / 2 h = 0
+    const double gain = gains(dvn, pair) * (1 - at.when / step.pace.h);
+    if (gap <= 0 || !(vn + gain < g.impact_speed[lane])) return kNeverCloses;
+    return at.when + (vn + std::sqrt(vn * vn - 2 * dvn / step.pace.h * left)) / -(dvn / step.pace.h);
+  }
   // two corners: |l n + v t| = radius, if they do not pass
   if (g.corners[k] >> lane & 1) {
     const double vt = r.nx * (a.y - b.y) - r.ny * (a.x - b.x) + (r.ta * a.w - r.tb * b.w);
@@ -111,9 +117,10 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Step& step
     const TouchRow r = row(g, lane, k, pose_a, pose_b);
     const double vn = normal_speed(r, va, vb);
     if (other_corners(g, k, lane) && r.gap < time * (fastest() + step.pace.gravity_dv)) return true;
-    if (vn > -pair.impact_speed) continue;
-    const double left =
-        r.gap + time * (vn + 0.5 * time / step.pace.h * normal_speed(r, step.dv[a], step.dv[b]));
+    const double dvn = normal_speed(r, step.dv[a], step.dv[b]);
+    const double ends = vn + time / step.pace.h * gains(dvn, pair);
+    if (ends > -pair.impact_speed) continue;
+    const double left = r.gap + time * (vn + 0.5 * time / step.pace.h * dvn);
     if (left >= 0 && spare < 0) {
       const double far = std::max(bounding_radius_[a], bounding_radius_[b]),
                    w = std::fabs(va.w) + std::fabs(vb.w);
@@ -122,7 +129,7 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Step& step
                2 * w * (std::fabs(va.x - vb.x) + std::fabs(va.y - vb.y) + far * w));
     }
     if (left >= 0 && left >= spare) continue;
-    if (r.gap <= g.sight[lane] && vn < g.impact_speed[lane]) return true;
+    if (r.gap <= g.sight[lane] && ends < g.impact_speed[lane]) return true;
   }
   return false;
 }
