@@ -26,7 +26,7 @@ class InstantImpact {
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostRows, kMostRows>;
 
   Matrix K;                          // rows x rows, 1/kg
-  Rows speeds, p;                    // m/s before the impact, of what rests as it is held; impulses, N s
+  Rows speeds, p;                    // m/s before the impact; impulses, N s
   std::vector<ConeBlock<D>> blocks;  // one a contact, with its friction, and one an end
   std::vector<double> elasticity;    // one a contact
   std::vector<char> strikes;         // one a contact; 0: too slow to bounce
@@ -35,9 +35,6 @@ class InstantImpact {
   void resize(int contacts, int ends = 0);
   /// Finds p. False where no impulses are found.
   bool solve();
-  /// J v of a row before all that, and after it, m/s.
-  double begun_speed(int row) const { return speeds[row] - K.row(row).dot(rested_); }
-  double speed_after(int row) const { return speeds[row] + K.row(row).dot(p - rested_); }
   /// What of p has held what rests since the step began, N s.
   const Rows& rested() const { return rested_; }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <span>
 #include <utility>
@@ -71,30 +70,21 @@ class JointSolver final : public System {
   /// substep is another.
   template <class Place>
   void compute_rows_at(double time, JointSolver& begun, int component, Place&& place) {
+    const std::span<const JointResponse> ends = begun.reached_ends(component);
     if (placed_at_[std::size_t(component)] == time) return;
-    placed_at_[std::size_t(component)] = struck_at_[std::size_t(component)] = time;
-    place_as(begun, component, place);
+    placed_at_[std::size_t(component)] = time;
+    const auto put = [&](int body) {
+      at_[body] = begun.at_[body], turn_[body] = begun.turn_[body];
+      place(body, at_[body], turn_[body]);
+    };
+    for (const int body : members(component)) put(body);
+    // and what is fixed or driven there
+    for (const int body : bodies_)
+      if (component_of_body_[std::size_t(body)] < 0) put(body);
     compute_rows(component);
-    take_ends(begun, component);
+    take_ends(begun, component, int(ends.size()));
   }
-  /// An end that a joint may come to.
-  struct End {
-    int block = -1, load = 0;
-  };
-  /// When the first end of a component is reached of those that `begun` does not have yet, where an impact
-  /// has sent it `from` s after the substep began: s after that, `until` at most; never: kNeverCloses.
-  /// place(time, body, pose, turn) as for compute_rows_at(). Every time in (`from`, `until`] may be asked
-  /// for.
-  using Place = std::function<void(double, int, BodyMotion<D>&, Orientation<D>&)>;
-  double next_end(JointSolver& begun, int component, double from, double until, const Place& place,
-                  End& which);
-  /// From now on `begun` has that end, too.
-  void reach(JointSolver& begun, int component, const End& end);
-  /// And no longer the i-th of its reached_ends(); the last takes its place.
-  void leave(JointSolver& begun, int component, int i);
-  void forget_places() {
-    placed_at_.assign(std::size_t(components()), -1.0), struck_at_.assign(std::size_t(components()), -1.0);
-  }
+  void forget_places() { placed_at_.assign(std::size_t(components()), -1.0); }
   /// What impacts have given bodies, the velocities of body_motion(), belongs to what iterations keep; of the
   /// components that `struck` has been asked for. After keep_row_speeds().
   /// What ends, motors and friction have given until the last impact, of h s, they do not take back.
@@ -230,7 +220,6 @@ class JointSolver final : public System {
   static constexpr double kWithoutEnd = std::numeric_limits<double>::infinity();
   // of the scene's size: how far off joints may stay, and ropes and still be taut
   static constexpr double kPut = 1e-9, kTaut = 1e-8;
-  static constexpr double kMet = 1e-12;      // and be at an end where an impact finds them: rounding
   static constexpr double kErrs = 1e-4;      // and by how much the integrator errs in a step at most
   static constexpr double kAims = 1e-6;      // of its speed: what a motor may be off it that has it
   static constexpr double kArrives = 1e-10;  // of its size, 1/s: slower a joint stays where it is
@@ -265,20 +254,7 @@ class JointSolver final : public System {
   void plan();
   void compute_rows(int component);
   void find_reached_ends(int component);
-  void take_ends(JointSolver& begun, int component);
-  bool add_end(int component, int block, Load load);
-  int& times_reached(int block, Load load) { return times_reached_[std::size_t(2 * block + load)]; }
-  template <class Place>
-  void place_as(const JointSolver& begun, int component, Place&& place) {
-    const auto put = [&](int body) {
-      at_[body] = begun.at_[body], turn_[body] = begun.turn_[body];
-      place(body, at_[body], turn_[body]);
-    };
-    for (const int body : members(component)) put(body);
-    // and what is fixed or driven there
-    for (const int body : bodies_)
-      if (component_of_body_[std::size_t(body)] < 0) put(body);
-  }
+  void take_ends(const JointSolver& begun, int component, int count);
   JointTurn<D> turn_between(const Joint<D>& joint) const;
   // whether a joint holds anything that moves by forces
   bool moves(const Joint<D>& joint) const {
@@ -328,11 +304,6 @@ class JointSolver final : public System {
   void solve_within(int begin, int end);
   void shift_bounded(Bounded& bounded, double by);
   double left(int joint, Load load) const;
-  double left(const End& end) const { return left(held_[std::size_t(end.block)], Load(end.load)); }
-  bool has_end(int block, Load load) const {
-    const Joint<D>& joint = model_.joints[std::size_t(held_[std::size_t(block)])];
-    return one_sided(joint) ? load == upper : load == lower ? joint.lower > -1e299 : joint.upper < 1e299;
-  }
   double left(const Stop& stop, double t);
   double excess(const Stop& stop, double t);
   double size(int joint) const;
@@ -424,21 +395,10 @@ class JointSolver final : public System {
     int count = 0;
     std::vector<JointResponse> ends;          // the first `count` are in use
     std::vector<std::pair<int, Load>> which;  // of each its block, and as what it holds
-
-    bool has(int block, Load load) const {
-      return std::find(which.begin(), which.end(), std::pair(block, load)) != which.end();
-    }
   };
   std::vector<ReachedEnds> reached_;  // of components
-  std::vector<int> times_reached_;    // by what impacts sent there in this substep, both ends of each block
   std::vector<double> left_;          // of components: what part of the substep is after their last impact
   std::vector<double> placed_at_;     // s, of components: when their rows are of; or negative
-  std::vector<double> struck_at_;     // the same of their last impact
-  struct WayToEnd {
-    End end;
-    double left = 0;  // m or rad
-  };
-  std::vector<WayToEnd> ways_to_ends_;
   std::vector<std::vector<int>> with_ends_;  // blocks with ropes or limits, of components
   std::vector<char> floating_;               // components: whether nothing holds them to what does not move
   bool may_break_ = false;

@@ -553,7 +553,6 @@ void JointSolver<D>::find_end_forces(const State<D>& state, double t) {
 template <int D>
 void JointSolver<D>::keep_row_speeds() {
   for (ReachedEnds& ends : reached_) ends.known = false;
-  times_reached_.assign(2 * held_.size(), 0);
   left_.assign(std::size_t(components()), 1.0);
   holds_.assign(model_.joints.size(), {});
   for (std::size_t r = 0; r < rows_.size(); ++r) targets_[r] = speed(rows_[r], at_);

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <functional>
 #include <tuple>
 
 #include "sim/solve/iterate/closing_time.h"
@@ -95,35 +94,21 @@ bool Impacts::reach_component(const Pair& pair, double when, const Step& step) {
   return tied;
 }
 
-// where a body of joints stands at a time
-void Impacts::place(int body, double when, const Step& step, BodyMotion<2>& at, Orientation<2>& turn) const {
-  Pose pose;
-  Motion ignored;
-  move(body, when, step, pose, ignored);
-  at.x = {pose.x, pose.y};
-  at.room_from_body << pose.c, -pose.s, pose.s, pose.c;
-  turn[0] += way_at(body, when, step).w;
-}
-
-// where an impact finds the joints of a body
-void Impacts::place_joints(int body, double when, const Step& step) {
-  const int component = body < 0 ? -1 : step.joints.component(body);
-  if (component < 0) return;
-  step.struck_joints.compute_rows_at(
-      when, step.joints, component,
-      [&](int its, BodyMotion<2>& at, Orientation<2>& turn) { place(its, when, step, at, turn); });
-}
-
-// the next end of joints that those come to which an impact has just changed; false where there is none
-bool Impacts::predict_end(int component, Impact& impact, const Step& step) {
-  const double from = when_[step.joints.members(component).front()];
-  const auto place_at = [&](double time, int body, BodyMotion<2>& at, Orientation<2>& turn) {
-    place(body, time, step, at, turn);
-  };
-  impact.component = component;
-  impact.when =
-      step.struck_joints.next_end(step.joints, component, from, step.pace.h, std::ref(place_at), impact.end);
-  return impact.when < kNeverCloses;
+// where an impact finds the joints of its bodies
+void Impacts::place_joints(const Pair& pair, double when, const Step& step) {
+  for (const int side : {pair.a, pair.b}) {
+    const int component = side < 0 ? -1 : step.joints.component(side);
+    if (component < 0) continue;
+    step.struck_joints.compute_rows_at(when, step.joints, component,
+                                       [&](int body, BodyMotion<2>& at, Orientation<2>& turn) {
+                                         Pose pose;
+                                         Motion ignored;
+                                         move(body, when, step, pose, ignored);
+                                         at.x = {pose.x, pose.y};
+                                         at.room_from_body << pose.c, -pose.s, pose.s, pose.c;
+                                         turn[0] += way_at(body, when, step).w;
+                                       });
+  }
 }
 
 // whether joints leave a touch of an impact nothing to move
@@ -208,7 +193,7 @@ bool Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
   if (tied) {
     for (int k = 0; k < 2; ++k) closes[k] = closes[k] && !locked(impact, k, batches, step);
     if (!closes[0] && !closes[1]) return false;
-    place_joints(pair.a, impact.when, step), place_joints(pair.b, impact.when, step);
+    place_joints(pair, impact.when, step);
     compute_responses(pair, pushes, closes, step);
   }
 
@@ -329,25 +314,19 @@ bool Impacts::strikes(int a, int b, const Motion& va, const Motion& vb, const St
   return changed > kStrikes * (swiftness(oa, ra) + swiftness(ob, rb));
 }
 
-// looks anew at all that an impact of a body moves
-void Impacts::changed_by_impact(int side, const Step& step) {
-  if (side < 0 || now_[side].im == 0) return;
-  step.joints.each_tied(side, [&](int body) {
-    ++rounds_[body];
-    for (const int next : around(body)) look_at(next);
-  });
-  const int component = step.joints.empty() ? -1 : step.joints.component(side);
-  if (component >= 0 && std::find(sent_.begin(), sent_.end(), component) == sent_.end())
-    sent_.push_back(component);
-}
-
-// notes it
+// notes it, and looks anew at all that it moves
 void Impacts::had_impact(const Impact& impact, const Step& step) {
   const Pair& pair = step.pairs[impact.pair];
   impacts_.push_back(impact);
   // what only passes a blow on may still have one of its own
   if (impact.speed > pair.impact_speed) impacts_of_[impact.pair] = 1;
-  changed_by_impact(pair.a, step), changed_by_impact(pair.b, step);
+  for (const int side : {pair.a, pair.b}) {
+    if (side < 0 || now_[side].im == 0) continue;
+    step.joints.each_tied(side, [&](int body) {
+      ++rounds_[body];
+      for (const int next : around(body)) look_at(next);
+    });
+  }
 }
 
 int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
@@ -361,7 +340,7 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
     if (impact.pair < int(impacts_of_.size())) impacts_of_[impact.pair] = 0;
   }
   bodies_.clear(), impacts_.clear(), due_.clear(), predicted_.clear(), passing_.clear();
-  rows_.clear(), groups_.clear(), queue_.clear(), sent_.clear(), drive_work_ = 0;
+  rows_.clear(), groups_.clear(), queue_.clear(), drive_work_ = 0;
   if (found.empty()) return -1;
   std::copy(old.begin(), old.end(), now_.begin());
   known_.assign(batches.size(), -1);
@@ -370,12 +349,7 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
   for (const int lane : found) look_at(batches[lane / kLanes].pair[lane % kLanes]);
   // which lane a pair has hangs on the steps before; the order of pairs does not
   std::sort(queue_.begin(), queue_.end());
-  const auto foresee = [&](const Impact& impact) {
-    due_.push(impact.when, int(predicted_.size()), rounds(impact, step));
-    predicted_.push_back(impact);
-  };
   double now = 0;
-  std::size_t resolved = 0;
   for (std::size_t at = 0;;) {
     Impact impact;
     if (at < queue_.size()) {
@@ -384,35 +358,24 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
       if (at + kPairsAhead < queue_.size()) __builtin_prefetch(&pairs[queue_[at + kPairsAhead]]);
       if (!predict(i, impact, batches, step)) continue;
       if (impact.when > now) {
-        foresee(impact);
+        due_.push(impact.when, int(predicted_.size()), rounds(pairs[i]));
+        predicted_.push_back(impact);
         continue;
       }
-    } else if (!sent_.empty()) {
-      const int component = sent_.back();
-      sent_.pop_back();
-      if (predict_end(component, impact, step)) foresee(impact);
-      continue;
     } else if (!due_.empty()) {
       const ImpactQueue::Due due = due_.pop();
       impact = predicted_[due.number];
-      if (due.rounds != rounds(impact, step)) continue;
+      if (due.rounds != rounds(pairs[impact.pair])) continue;
       now = due.when;
     } else {
       break;
     }
-    const int struck = impact.pair < 0 ? joints.members(impact.component).front() : pairs[impact.pair].a;
-    if (++resolved > kMostImpacts) {
+    const Pair& pair = pairs[impact.pair];
+    if (impacts_.size() >= kMostImpacts) {
       for (const int i : queue_) waiting_[i] = 0;
-      return struck;
+      return pair.a;
     }
     if (at == queue_.size()) queue_.clear(), at = 0;
-    if (impact.pair < 0) {
-      if (resolve_end(impact, step))
-        changed_by_impact(struck, step);
-      else
-        sent_.push_back(impact.component);
-      continue;
-    }
     if (resolve_instant(impact, batches, step)) {
       for (const Meeting& meeting : meetings_) {
         if (meeting.moved) had_impact(meeting.impact, step);

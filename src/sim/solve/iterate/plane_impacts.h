@@ -74,8 +74,6 @@ class Impacts {
   };
   struct Impact {
     int pair = -1;
-    int component = -1;  // of joints: an impact on one of its ends, of no pair
-    JointSolver<2>::End end;
     double when = 0;       // s: the rows are those of then
     bool renewed = false;  // its features are others than those of the lane
     bool met[2] = {false, false};
@@ -109,8 +107,7 @@ class Impacts {
   };
   void reach(int body, double when, const Step& step);
   Motion way_at(int body, double when, const Step& step) const;
-  void place_joints(int body, double when, const Step& step);
-  void place(int body, double when, const Step& step, BodyMotion<2>& at, Orientation<2>& turn) const;
+  void place_joints(const Pair& pair, double when, const Step& step);
   void move(int body, double when, const Step& step, Pose& pose, Motion& v) const;
   PlacedPair placed_at(const Pair& pair, double when, const ContactBatch& batches, const Step& step) const;
   double closing_guess(const Pair& pair, int k, const ContactBatch& batches, const PlacedPair& at,
@@ -128,27 +125,19 @@ class Impacts {
   static double closed_gap(const Pair& pair, const PlacedPair& at, double far);
   static bool place_touch(const TouchRow& r, double together, int k, Impact& impact);
   bool find_impact(const Pair& pair, Impact& impact, const ContactBatch& batches, const Step& step);
-  int rounds(const Impact& impact, const Step& step) const {
-    if (impact.pair < 0) return rounds_[step.joints.members(impact.component).front()];
-    const Pair& pair = step.pairs[impact.pair];
-    return rounds_[pair.a] + (pair.b < 0 ? 0 : rounds_[pair.b]);
-  }
+  int rounds(const Pair& pair) const { return rounds_[pair.a] + (pair.b < 0 ? 0 : rounds_[pair.b]); }
   void look_at(int pair);
   bool predict(int pair, Impact& impact, const std::vector<ContactBatch>& batches, const Step& step);
   bool resolve(Impact& impact, const std::vector<ContactBatch>& batches, const Step& step);
   bool reach_component(const Pair& pair, double when, const Step& step);
-  bool predict_end(int component, Impact& impact, const Step& step);
   std::pair<double, double> place_at(int body, double when, const Step& step) const;
   bool meets_at(const Pair& pair, double when, const ContactBatch& batches, const Step& step,
                 Meeting& meeting);
   bool gather_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step);
   void take_alone(const Impact& first);
-  void add_ends(int body, double when, const Step& step);
-  void push_ends(const Step& step);
-  bool resolve_end(const Impact& impact, const Step& step);
+  void gather_ends(double when, const Step& step);
   bool resolve_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step);
   void had_impact(const Impact& impact, const Step& step);
-  void changed_by_impact(int body, const Step& step);
   void give(int body, double x, double y, double w) {
     now_[body].x += x, now_[body].y += y, now_[body].w += w;
     dv_impacts_[body].x += x, dv_impacts_[body].y += y, dv_impacts_[body].w += w;
@@ -188,7 +177,6 @@ class Impacts {
   double drive_work_ = 0;                // J
 
   std::vector<int> queue_;        // pairs to be looked at, as one of their bodies just had an impact
-  std::vector<int> sent_;         // likewise components of joints, whose ends are
   ImpactQueue due_;               // numbers of predicted_
   std::vector<char> waiting_;     // of pairs: in queue_
   std::vector<char> impacts_of_;  // of pairs: whether they had one

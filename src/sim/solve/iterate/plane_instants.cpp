@@ -105,43 +105,27 @@ void Impacts::take_alone(const Impact& first) {
     if (first.met[k]) closed_.emplace_back(0, k);
 }
 
-// the ends of joints that are reached where a body is struck, into ends_
-void Impacts::add_ends(int body, double when, const Step& step) {
-  if (body < 0) return;
-  place_joints(body, when, step);
-  const double left = 1 - when / step.pace.h;
-  ends_.add(step.joints, step.struck_joints, body, left, [&](int member, Vec<2>& v, AngularVec<2>& w) {
-    if (now_[member].im == 0) return false;
-    Pose ignored;
-    Motion its;
-    move(member, when, step, ignored, its);
-    v = {its.x, its.y}, w[0] = its.w;
-    return true;
-  });
-}
-
-// what the ends of joints that have been struck give
-void Impacts::push_ends(const Step& step) {
-  drive_work_ +=
-      ends_.apply(step.struck_joints, instant_,
-                  [&](int body, const Vec<2>& v, const AngularVec<2>& w) { give(body, v[0], v[1], w[0]); });
-  ends_.let_go(step.joints, step.struck_joints, instant_);
-}
-
-// Joints that come to an end of theirs, and stop there. What bodies touch meets it after that. False where
-// that changes nothing.
-bool Impacts::resolve_end(const Impact& impact, const Step& step) {
-  step.struck_joints.reach(step.joints, impact.component, impact.end);
+// the ends of joints that are reached by what meets, into ends_
+void Impacts::gather_ends(double when, const Step& step) {
   ends_.clear();
-  add_ends(step.joints.members(impact.component).front(), impact.when, step);
+  if (step.joints.empty()) return;
+  for (const Meeting& meeting : meetings_) {
+    const Pair& pair = step.pairs[meeting.impact.pair];
+    place_joints(pair, when, step);
+    for (const int body : {pair.a, pair.b}) {
+      if (body < 0) continue;
+      const double left = 1 - when / step.pace.h;
+      ends_.add(step.joints, step.struck_joints, body, left, [&](int member, Vec<2>& v, AngularVec<2>& w) {
+        if (now_[member].im == 0) return false;
+        Pose ignored;
+        Motion its;
+        move(member, when, step, ignored, its);
+        v = {its.x, its.y}, w[0] = its.w;
+        return true;
+      });
+    }
+  }
   ends_.limit();
-  if (ends_.count() == 0) return false;
-  instant_.resize(0, ends_.count());
-  ends_.couple(step.struck_joints, {}, instant_);
-  if (!instant_.solve() || !ends_.push(instant_)) return false;
-  for (const int member : step.joints.members(impact.component)) reach(member, impact.when, step);
-  push_ends(step);
-  return true;
 }
 
 // all that meets together; false where it goes pair after pair
@@ -174,13 +158,7 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     });
     if (closed_.empty()) return false;
   }
-  ends_.clear();
-  for (const Meeting& meeting : meetings_) {
-    if (joints.empty()) break;
-    const Pair& pair = step.pairs[meeting.impact.pair];
-    add_ends(pair.a, first.when, step), add_ends(pair.b, first.when, step);
-  }
-  ends_.limit();
+  gather_ends(first.when, step);
   if (meetings_.size() == 1 && ends_.count() == 0) return false;
   Pose ignored;
   move(its.a, first.when, step, ignored, meetings_[0].a);
@@ -277,7 +255,9 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     }
     for (const StruckSide& p : own) give(p.body, p.x * (p.im * l), p.y * (p.im * l), p.ii * (p.turn * l));
   }
-  push_ends(step);
+  drive_work_ += ends_.apply(joints, instant_, [&](int body, const Vec<2>& v, const AngularVec<2>& w) {
+    give(body, v[0], v[1], w[0]);
+  });
   return true;
 }
 

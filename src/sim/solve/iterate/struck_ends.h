@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <vector>
 
@@ -36,8 +35,7 @@ class StruckEnds {
       // flights come to it by and by
       at.v += left * joints.jump(member), at.w += left * joints.spin_jump(member);
     }
-    for (std::size_t i = 0; i < reached.size(); ++i)
-      ends_.push_back({&reached[i], struck.row_speed(reached[i]), component, int(i)});
+    for (const Response& end : reached) ends_.push_back({&end, struck.row_speed(end)});
   }
   /// More than an impact takes are none.
   void limit() {
@@ -64,18 +62,6 @@ class StruckEnds {
       if (impulse(impact, i) != 0) return true;
     return false;
   }
-  /// Those that an impact that has been solved sends off are no longer reached.
-  void let_go(JointSolver<D>& joints, JointSolver<D>& struck, const InstantImpact<D>& impact) const {
-    constexpr double kLeaves = 1e-9;  // of the fastest row
-    double fastest = 0;
-    for (int row = 0; row < int(impact.p.size()); ++row)
-      fastest = std::max(fastest, std::fabs(impact.begun_speed(row)));
-    // the last first, for what follows one that is let go moves up
-    for (int i = count(); i-- > 0;) {
-      if (impact.speed_after(int(impact.p.size()) - count() + i) > kLeaves * fastest)
-        struck.leave(joints, ends_[std::size_t(i)].component, ends_[std::size_t(i)].number);
-    }
-  }
   /// act(body, change of its velocity, of its spin) by these impulses. The work of kinematic bodies by them,
   /// J.
   template <class Act>
@@ -93,8 +79,7 @@ class StruckEnds {
  private:
   struct End {
     const Response* response;
-    double speed;           // J v as the impact comes
-    int component, number;  // among those that this has reached
+    double speed;  // J v as the impact comes
   };
   double impulse(const InstantImpact<D>& impact, int i) const {
     return impact.p[int(impact.p.size()) - count() + i];
