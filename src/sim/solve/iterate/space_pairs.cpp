@@ -12,9 +12,11 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kSlow = 0.01;       // of the narrower body: so far a pair moves with the same features
-constexpr double kWider = 0.05;      // bounding radii: how far a body may come before pairs are sought anew
-constexpr double kSpare = 0.02;      // of their bounding radius: what two may come nearer by being struck
+constexpr double kSlow = 0.01;    // of the narrower body: so far a pair moves with the same features
+constexpr double kWider = 0.05;   // bounding radii: how far a body may come before pairs are sought anew
+constexpr double kSpare = 0.02;   // of their bounding radius: what two may come nearer by being struck
+constexpr double kThrown = 0.1;   // bounding radii: how far at most a body comes in a substep by being struck
+constexpr double kFarther = 1.5;  // times its speed: how far a body may come in a step
 constexpr double kRounding = 1e-12;  // rad
 
 }  // namespace
@@ -27,7 +29,41 @@ double SpaceIterative::margin(int body, double h) const {
   if (drives_.number(body) >= 0) return h * swiftness(body) + farther_[body] + 1e-3 * bounding_radius_[body];
   if (inactive_[body]) return 0;
   const double struck = farther_.empty() ? 0 : farther_[body];
-  return h * (1.5 * swiftness(body) + 2 * g_ * h) + struck + 1e-3 * bounding_radius_[body];
+  return h * (kFarther * swiftness(body) + 2 * g_ * h) + struck + 1e-3 * bounding_radius_[body];
+}
+
+// How fast blows of the substep may throw bodies, one after another, into thrown_, and wider margins for
+// that, with the pairs that are near by these: what strikes passes on
+//   v' = (1 + e) v m / (m + m')
+void SpaceIterative::foresee_blows(double h) {
+  const int n = int(model_.bodies.size());
+  thrown_.resize(std::size_t(n));
+  for (int i = 0; i < n; ++i)
+    thrown_[std::size_t(i)] = inactive_[i] && drives_.number(i) < 0 ? 0 : swiftness(i);
+  const auto pass_on = [&](int from, int to) {
+    const double speed = thrown_[std::size_t(from)];
+    if (!(speed > thrown_[std::size_t(to)]) || inactive_[to] || drives_.number(to) >= 0) return false;
+    const Body<D>&a = model_.bodies[std::size_t(from)], &b = model_.bodies[std::size_t(to)];
+    const double share = drives_.number(from) >= 0 || joints_.has(from) ? 1 : a.mass / (a.mass + b.mass);
+    const double thrown = (1 + std::max(a.elasticity, b.elasticity)) * share * speed;
+    // slow ones have room enough
+    if (!(thrown > thrown_[std::size_t(to)]) || !(h * kFarther * thrown > margin_[to])) return false;
+    thrown_[std::size_t(to)] = thrown;
+    const double margin = std::min(h * kFarther * thrown, kThrown * bounding_radius_[to]);
+    if (margin > margin_[to]) {
+      const Vec<D> more = Vec<D>::Constant(margin - margin_[to]);
+      margin_[to] = margin, bounds_[to].lower -= more, bounds_[to].upper += more;
+    }
+    return true;
+  };
+  for (bool more = true; more;) {
+    find_near();
+    more = false;
+    for (const auto& [a, b] : near_pairs_) {
+      if (thrown_[std::size_t(a)] == thrown_[std::size_t(b)] || !bounds_[a].meets(bounds_[b])) continue;
+      more = pass_on(a, b) || pass_on(b, a) || more;
+    }
+  }
 }
 
 // how fast points of one body pass those of another, at most
@@ -39,8 +75,14 @@ double SpaceIterative::passing_speed(int a, int b) const {
 // nearer, but for what strikes them meanwhile.
 double SpaceIterative::pair_margin(int a, int b, double h) const {
   const double farther = carries_.empty() ? 0 : farther_[a] + farther_[b];
-  return std::min(margin_[a] + margin_[b], h * (passing_speed(a, b) + 2 * g_ * h) + farther +
-                                               kSpare * (bounding_radius_[a] + bounding_radius_[b]));
+  const auto struck = [&](int body) {
+    return thrown_[body] > swiftness(body)
+               ? std::min(h * kFarther * thrown_[body], kThrown * bounding_radius_[body])
+               : 0;
+  };
+  return std::min(margin_[a] + margin_[b],
+                  h * (passing_speed(a, b) + 2 * g_ * h) + farther +
+                      std::max(kSpare * (bounding_radius_[a] + bounding_radius_[b]), struck(a) + struck(b)));
 }
 
 // All features are looked for sixty times a second. In between, a pair keeps those of its contacts in the
@@ -63,7 +105,7 @@ void SpaceIterative::find(StepPart<D> step) {
       bounds_[i].lower -= more, bounds_[i].upper += more;
     }
   });
-  find_near();
+  foresee_blows(h);
   const Search search{h, number, same, step.state.contacts};
   found_.resize(std::size_t((n + kPairPiece - 1) / kPairPiece));
   for (Found& found : found_) found.all.clear();
