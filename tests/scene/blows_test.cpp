@@ -42,5 +42,25 @@ TEST(Blows, GoThroughARackOfBallsInAMillisecond) {
   }
 }
 
+// Two that attract each other and touch press on each other and lie still: what forces make them close within
+// a substep is no blow, of charges no more than of gravity.
+TEST(Blows, AreNoneWhereBodiesAttractEachOther) {
+  for (const int dimension : {2, 3}) {
+    for (const int rate : {60, 240, 600, 960}) {
+      const char* z = dimension == 3 ? ", 0" : "";
+      std::string text = empty_room({"", fmt::format("[physics]\nsolver = 'iterative'\nrate = {}\n", rate)},
+                                    dimension, "coulomb = 1\n");
+      text += disc("a", 1, 0.2, fmt::format("charge = 1\nposition = [0, 0{}]", z));
+      text += disc("b", 1, 0.2, fmt::format("charge = -1\nposition = [0.4, 0{}]", z));
+      const sim::Snapshot now = TextRun(text).at(2);
+      const std::string what = fmt::format("{} at {}", dimension, rate);
+      ASSERT_EQ(now.contacts.size(), 1u) << what;
+      EXPECT_NEAR(std::fabs(now.contacts[0].force.x()), 6.25, 1e-7) << what;
+      EXPECT_LT(now.bodies[0].velocity.norm(), 1e-9) << what;
+      EXPECT_LT(now.energies.displacement, 1e-6) << what;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

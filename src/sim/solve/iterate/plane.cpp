@@ -214,7 +214,8 @@ Orientation<2> PlaneIterative::begun_turn(int body) const { return Orientation<D
 // The wide kernel that applies the forces of the last step also finds the contact points that close.
 void PlaneIterative::warm_start(StepPart<D> part) {
   constants_ = {part.h, 0.05 * restitution_threshold_,
-                part.h * std::sqrt(model_.gravity.squaredNorm()) + driven_gain_, allowed_overlap(part.state)};
+                part.h * std::sqrt(model_.gravity.squaredNorm()) + driven_gain_, smooth() ? kRestingGains : 0,
+                allowed_overlap(part.state)};
   if (part.substep == 0) warm_start_.begin(moving_);
   if (newness() < 1) {
     forces_before_.resize(batches_.size());

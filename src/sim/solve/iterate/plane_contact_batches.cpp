@@ -267,7 +267,7 @@ int PlaneIterative::begin_rest(const Sleep<D>::Island& island, const State<D>& s
       rest_batches_.push_back(empty_batch(int(state.x.size()))), lane = 0, colour = pair.colour;
     copy_lane(batches_[pair.slot / kLanes], pair.slot % kLanes, rest_batches_.back(), lane++);
   }
-  constants_ = {h, 1e300, 0, {}, nullptr};
+  constants_ = {h, 1e300, 0, 0, {}, nullptr};
   old_.assign(old_.size(), {});
   plane::warm_start(rest_batches_.data(), int(rest_batches_.size()), poses_.data(), poses_.data(),
                     old_.data(), moving_.data(), constants_, slow_, fast_);

@@ -79,6 +79,7 @@ struct StepConstants {
   double h = 0;                         // s
   double min_closing_speed = 0;         // m/s: slower approaches are none
   double gravity_dv = 0;                // m/s that gravity may add in the step
+  double rests = 0;                     // times what forces add to a closing speed in it: no faster is a blow
   AllowedOverlap allowed;               // what is deeper is pushed apart
   const TargetSpeeds* least = nullptr;  // by group, of lanes that are struck
 };

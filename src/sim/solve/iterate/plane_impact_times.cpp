@@ -72,11 +72,12 @@ double Impacts::closing_guess(const Pair& pair, int k, const ContactBatch& g, co
   const TouchRow& r = at.rows[k];
   const double vn = normal_speed(r, a, b), gap = r.gap;
   const double dvn = normal_speed(r, gain_a, gain_b), left = std::max(0.0, gap);
+  const double slow = strike_speed(pair, g.impact_speed[lane], dvn, step);
   if (gap > g.sight[lane]) return kNeverCloses;
-  if (!(vn < g.impact_speed[lane])) {
+  if (!(vn < slow)) {
     // it may yet, by forces: gap + vn t + dvn t^2 / 2 h = 0
     const double gain = gains(dvn, pair) * (1 - at.when / step.pace.h);
-    if (gap <= 0 || !(vn + gain < g.impact_speed[lane])) return kNeverCloses;
+    if (gap <= 0 || !(vn + gain < slow)) return kNeverCloses;
     return at.when + (vn + std::sqrt(vn * vn - 2 * dvn / step.pace.h * left)) / -(dvn / step.pace.h);
   }
   // two corners: |l n + v t| = radius, if they do not pass
@@ -94,8 +95,10 @@ double Impacts::closing_time(const Pair& pair, int k, const ContactBatch& g, con
                              const Step& step) const {
   const double guess = closing_guess(pair, k, g, start, step);
   if (guess == kNeverCloses || start.rows[k].gap <= 0) return guess;
-  return sim::closing_time(start.when, guess, step.pace.h, g.impact_speed[pair.slot % kLanes],
-                           [&](double when) {
+  const int lane = pair.slot % kLanes;
+  const double dvn = normal_speed(start.rows[k], step.dv[g.a[lane]], step.dv[g.b[lane]]);
+  return sim::closing_time(start.when, guess, step.pace.h,
+                           strike_speed(pair, g.impact_speed[lane], dvn, step), [&](double when) {
                              const PlacedPair at = placed_at(pair, when, g, step);
                              return GapInTime{at.rows[k].gap, normal_speed(at.rows[k], at.a, at.b)};
                            });
@@ -119,7 +122,8 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Step& step
     if (other_corners(g, k, lane) && r.gap < time * (fastest() + step.pace.gravity_dv)) return true;
     const double dvn = normal_speed(r, step.dv[a], step.dv[b]);
     const double ends = vn + time / step.pace.h * gains(dvn, pair);
-    if (ends > -pair.impact_speed) continue;
+    const double slow = strike_speed(pair, g.impact_speed[lane], dvn, step);
+    if (ends > -pair.impact_speed || !(ends < slow)) continue;
     const double left = r.gap + time * (vn + 0.5 * time / step.pace.h * dvn);
     if (left >= 0 && spare < 0) {
       const double far = std::max(bounding_radius_[a], bounding_radius_[b]),
@@ -129,7 +133,7 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Step& step
                2 * w * (std::fabs(va.x - vb.x) + std::fabs(va.y - vb.y) + far * w));
     }
     if (left >= 0 && left >= spare) continue;
-    if (r.gap <= g.sight[lane] && ends < g.impact_speed[lane]) return true;
+    if (r.gap <= g.sight[lane]) return true;
   }
   return false;
 }
@@ -265,7 +269,8 @@ bool Impacts::find_impact(const Pair& pair, Impact& impact, const ContactBatch& 
     place_touch(r, closed_gap(pair, at, g.far[lane]), k, impact);
     const double vn = normal_speed(r, at.a, at.b);
     if (impact.met[k]) impact.speed = std::max(impact.speed, -vn);
-    any = any || (impact.met[k] && vn < g.impact_speed[lane]);
+    const double dvn = normal_speed(r, step.dv[a], step.dv[b]);
+    any = any || (impact.met[k] && vn < strike_speed(pair, g.impact_speed[lane], dvn, step));
   }
   return any;
 }

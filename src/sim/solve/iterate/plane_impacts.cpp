@@ -205,7 +205,10 @@ bool Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
     system.closed[r / 2] = true;
     const Push& p = pushes[r % 2][r / 2];
     system.v[r] = speed(p, va, vb) + (r % 2 != 0 && g.belts ? g.belt[lane] : 0);
-    if (r % 2 == 0) system.e[r / 2] = system.v[r] < g.impact_speed[lane] ? pair.material.elasticity : 0;
+    if (r % 2 == 0) {
+      const double slow = strike_speed(pair, g.impact_speed[lane], speed(p, step.dv[a], step.dv[b]), step);
+      system.e[r / 2] = system.v[r] < slow ? pair.material.elasticity : 0;
+    }
     for (int c = 0; c <= r; ++c) {
       if (!closes[c / 2]) continue;
       const Push& q = pushes[c % 2][c / 2];
@@ -255,15 +258,17 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
     ContactBatch& g = batches[group];
     const Rows& r = rows(group, batches, step.poses);
     const char met = waiting_[i];
-    double v[2];
+    double v[2], slow[2];
     bool any = met != 0;
     const double last = std::max({0.0, when_[pair.a], when_[b]});
     const Motion va = motion_at(pair.a, last, step), vb = motion_at(b, last, step);
     for (int k = 0; k < pair.touches; ++k) {
       v[k] = normal_speed(r, k, lane, va, vb);
-      const double ends = v[k] + gains(normal_speed(r, k, lane, step.dv[pair.a], step.dv[b]), pair);
+      const double dvn = normal_speed(r, k, lane, step.dv[pair.a], step.dv[b]),
+                   ends = v[k] + gains(dvn, pair);
+      slow[k] = strike_speed(pair, g.impact_speed[lane], dvn, step);
       any = any || (v[k] < 0 && r.gap[k][lane] + step.pace.h * v[k] < 0) ||
-            (ends < -pair.impact_speed && r.gap[k][lane] + step.pace.h * ends < 0);
+            (ends < slow[k] && r.gap[k][lane] + step.pace.h * ends < 0);
     }
     const double fast = swiftness(va, bounding_radius_[pair.a]) + swiftness(vb, bounding_radius_[b]);
     const bool struck = strikes(pair.a, b, va, vb, step);
@@ -294,8 +299,7 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
       if (goes_on && !(g.p[k][lane] > 0)) least = std::min(least, 0.0);
       // nor may rows that are others push apart what only they part
       if (met == 2 || vn < 0) least = std::min(least, 0.0);
-      least = target_after_impacts(least, {gap, vn}, kTogether * g.far[lane], g.impact_speed[lane], left,
-                                   step.pace.h);
+      least = target_after_impacts(least, {gap, vn}, kTogether * g.far[lane], slow[k], left, step.pace.h);
     }
   };
   for (const int i : passing_) leave(i);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
@@ -147,6 +148,13 @@ class Impacts {
                          const Step& step);
   static double speed(const Push& push, const Motion& a, const Motion& b) {
     return push.x * (a.x - b.x) + push.y * (a.y - b.y) + (push.a * a.w - push.b * b.w);
+  }
+  // No slower does a touch of a lane strike, -m/s; dvn: how much faster it closes by the substep's forces,
+  // but for those of joints, which whip.
+  double strike_speed(const Pair& pair, double impact_speed, double dvn, const Step& step) const {
+    const auto tied = [&](int body) { return body >= 0 && step.joints.has(body); };
+    if (!step.joints.empty() && (tied(pair.a) || tied(pair.b))) return impact_speed;
+    return std::min(impact_speed, step.pace.rests * dvn);
   }
   // what forces give to a closing speed in the substep, as far as it is more than gravity does
   static double gains(double dvn, const Pair& pair) { return dvn < -pair.impact_speed ? dvn : 0; }

@@ -195,7 +195,8 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     const Push& push = push_of(i);
     instant_.speeds[i] = speed(push, meeting.a, meeting.b) + (i % 2 != 0 && g.belts ? g.belt[lane] : 0);
     instant_.blocks[k].mu = pair.material.friction;
-    if (i % 2 == 0 && instant_.speeds[i] < g.impact_speed[lane])
+    const auto gained = [&] { return speed(push, step.dv[pair.a], step.dv[pair.b >= 0 ? pair.b : room]); };
+    if (i % 2 == 0 && instant_.speeds[i] < strike_speed(pair, g.impact_speed[lane], gained(), step))
       instant_.strikes[k] = 1, instant_.elasticity[k] = pair.material.elasticity;
     StruckSide own[2], others[2];
     sides(i, own);

@@ -170,6 +170,7 @@ class SpaceIterative final : public Iterative<3> {
   Instant instant(int touch, double t, double h, Flown* own = nullptr) const;
   Vec<D> free_gain(int body) const;
   double strike_speed(const ContactConstraint& touch) const;
+  bool meets_later(const ContactConstraint& touch, double before, double h) const;
   double closing_time(int touch, double h);
   double meeting_time(int touch, double h, Flown* own = nullptr) const;
   bool may_turn_into(int first, int end, double h, Flown* own, double& least) const;

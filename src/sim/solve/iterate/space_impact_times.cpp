@@ -114,15 +114,16 @@ Vec<3> SpaceIterative::free_gain(int body) const {
   return v_free_[body] - stances_[body].v;
 }
 
-// What closes slower than twice what the free motion makes it close within the substep does so by that, and
-// strikes nothing: of gravity, restitution_threshold_. Schemes that share out a whole step lead what bears
-// aside, and it is struck.
+// No slower does a touch strike: kRestingGains, of gravity restitution_threshold_. Schemes that share out a
+// whole step lead what bears aside, and it is struck.
 double SpaceIterative::strike_speed(const ContactConstraint& touch) const {
-  if (!smooth()) return restitution_threshold_;
+  // and joints whip
+  const auto tied = [&](int body) { return body < int(inactive_.size()) && joints_.has(body); };
+  if (!smooth() || tied(touch.a) || tied(touch.b)) return restitution_threshold_;
   const auto gain = [&](int body) -> Vec<D> {
     return body < int(inactive_.size()) && inactive_[body] ? Vec<D>(Vec<D>::Zero()) : free_gain(body);
   };
-  return std::max(restitution_threshold_, -2 * touch.n.dot(gain(touch.a) - gain(touch.b)));
+  return std::max(restitution_threshold_, -kRestingGains * touch.n.dot(gain(touch.a) - gain(touch.b)));
 }
 
 // How fast the matter of two bodies passes at most, m/s, wherever they touch in the step before an impact: at

@@ -61,6 +61,9 @@ inline constexpr double kNearby = 0.01;
 /// Of how fast two pass each other and turn: what bore in the last substep and closes no faster goes on
 /// bearing, and is not struck.
 inline constexpr double kLasting = 0.05;
+/// What closes slower than so many times what the free motion makes it close within the substep does so by
+/// that, and strikes nothing.
+inline constexpr double kRestingGains = 2;
 /// rad: what turns farther in a substep does so without its rows.
 inline constexpr double kMostTurn = 1;
 /// What changes how fast two pass each other by more than this, of how fast both are, is a blow: how their
