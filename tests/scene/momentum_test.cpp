@@ -165,5 +165,27 @@ TEST(Momentum, OfASlowBlowOfClayIsGivenWhereItMeets) {
   }
 }
 
+// Discs that gravitation holds together, and one more that falls on them: so much lies on so much there that
+// the direct solver goes on by impulses in many pieces of a step, which turn nothing either.
+TEST(Momentum, OfAHeapThatGravitationHoldsTogetherStays) {
+  for (const int rate : {60, 240, 600}) {
+    std::string scene = empty_room({"", fmt::format("[physics]\nsolver = 'direct'\nrate = {}\n", rate)}, 2,
+                                   "gravitation = 1\n");
+    const std::string manner = "friction = 0.3\nelasticity = 0.3\n";
+    scene += disc("m", 1, 0.2, "position = [0, 0]\n" + manner);
+    for (int i = 0; i < 6; ++i) {
+      const double at = i * std::acos(-1) / 3;
+      scene += disc(fmt::format("a{}", i), 1, 0.2,
+                    fmt::format("position = [{}, {}]\n{}", 0.4 * std::cos(at), 0.4 * std::sin(at), manner));
+    }
+    scene += disc("c", 0.5, 0.1, "position = [2, 0]\nvelocity = [0, 0.5]\n" + manner);
+    const TextRun run(scene);
+    const double begun = run.at(0).angular_momentum.z(), before = run.at(2).energies.total();
+    const sim::Snapshot now = run.at(3);
+    EXPECT_NEAR(now.angular_momentum.z(), begun, 1e-3) << rate;
+    EXPECT_LT(now.energies.total(), before + 1e-9) << rate;
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

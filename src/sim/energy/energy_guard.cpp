@@ -379,6 +379,13 @@ double EnergyGuard<D>::take_back(State<D>& state, bool lower) {
   for (Island& it : sums_) {
     it.gain -= it.granted;
     if (!it.touched || it.driven || (it.chained && !it.rooted) || !(it.gain > 0) || it.more != 0) continue;
+    // what slides as one along the ground goes on, if the rest is enough
+    if (it.rooted && !it.held && !it.chained && g_ > 0) {
+      const Vec<D> down = model_.gravity / g_, as_one = it.momentum / it.mass;
+      const Vec<D> along = as_one - down.dot(as_one) * down;
+      const double rest = it.kinetic - 0.5 * it.mass * along.squaredNorm();
+      if (rest > it.gain) it.along = along, it.kinetic = rest;
+    }
     const double has = std::max(it.kinetic, 0.0);
     it.keeps = has > it.gain ? std::sqrt(1 - it.gain / has) : 0;
     if (it.gain <= has) continue;
@@ -398,7 +405,7 @@ double EnergyGuard<D>::take_back(State<D>& state, bool lower) {
       if (const int k = turning(state, i); k >= 0) state.spin[k] += it.more * (state.spin[k] - spin_[k]);
     }
     if (it.keeps == 1) continue;
-    Vec<D> common = Vec<D>::Zero();
+    Vec<D> common = it.along;
     AngularVec<D> spin = AngularVec<D>::Zero();
     if (!it.rooted) {
       spin = it.turning;

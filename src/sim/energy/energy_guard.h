@@ -40,11 +40,12 @@ class EnergyGuard {
   void excuse(int body, double share) { granted_[body] = share; }
   /// Removes from each island of touching bodies the energy that it gained: where it touches something fixed,
   /// by scaling what the step has changed of its velocities, so that what no contact brakes goes on; where
-  /// that is not enough, and where joints hold it, by scaling its velocities; where it touches nothing fixed,
-  /// its velocities relative to each other, so that momentum and angular momentum stay. If the motion has too
-  /// little energy and `lower` is true, bodies that rose are lowered; in a crowd they would be lowered into
-  /// each other. Islands on which hands, motors or explosions do work are left alone. `state` is that of
-  /// risen(). Returns the energy (J) that remains: that of risen height.
+  /// that is not enough, and where joints hold it, by scaling its velocities, what it slides as one along the
+  /// ground last; where it touches nothing fixed, its velocities relative to each other, so that momentum and
+  /// angular momentum stay. If the motion has too little energy and `lower` is true, bodies that rose are
+  /// lowered; in a crowd they would be lowered into each other. Islands on which hands, motors or explosions
+  /// do work are left alone. `state` is that of risen(). Returns the energy (J) that remains: that of risen
+  /// height.
   double take_back(State<D>& state, bool lower);
 
  private:
@@ -64,7 +65,8 @@ class EnergyGuard {
     bool held = false;                   // by any joint
     // of the changes of velocity: their energy, and its rate along them, J
     double changes = 0, rate = 0;
-    double more = 0;  // of the changes: so much of them is added
+    double more = 0;                // of the changes: so much of them is added
+    Vec<D> along = Vec<D>::Zero();  // m/s: what it slides as one, which goes on
     // as it moves as one: about its middle
     AngularVec<D> turning = AngularVec<D>::Zero();  // angular momentum, then spin
     Eigen::Matrix<double, kAngular<D>, kAngular<D>> inertia =

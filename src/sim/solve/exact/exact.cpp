@@ -556,11 +556,12 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
     if (constraint.kind == Constraint::Kind::motor)
       progress_.given += 0.5 * f_[constraint.first] * (constraint.began + row_velocity(constraint.first));
   }
+  // By the new velocities, symplectic: what forces at the old places give is no angular momentum, and what no
+  // longer closes stays apart.
   for (const int body : members) {
-    state.x[body] += 0.5 * h * (interval_.begun.v[body] + state.v[body]);
+    state.x[body] += h * state.v[body];
     if (const int k = turning(state, body); k >= 0)
-      state.turn[k] = turned<D>(interval_.begun.turn[k],
-                                AngularVec<D>(0.5 * h * (interval_.begun.spin[k] + state.spin[k])));
+      state.turn[k] = turned<D>(interval_.begun.turn[k], AngularVec<D>(h * state.spin[k]));
   }
   chains.advance(interval_.begun.chain_states, h, state);
   for (const Constraint& constraint : constraints_) {
