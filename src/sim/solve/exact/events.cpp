@@ -452,8 +452,7 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
   interval_.forces = f_;
   const Constraint* stops = nullptr;  // what the interval is to end with, coming to its aim
   for (int tries = 0; tries < 20; ++tries) {
-    integrate(state, t, length);
-    if (const bool finite = all_finite(state); !finite || pulls_wildly()) {
+    if (const bool finite = integrates(state, t, length); !finite || pulls_wildly()) {
       begin_again(state, t);
       cut = true, longer = length, length *= kShorter;
       progress_.released.reset(), stops = nullptr;
@@ -506,6 +505,17 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
   }
   integrate(state, t, length);
   return length;
+}
+
+// Whether that leads anywhere: where rows are all but dependent, a stage may go beyond all numbers.
+template <int D>
+bool ExactSolver<D>::integrates(State<D>& state, double t, double h) {
+  try {
+    integrate(state, t, h);
+  } catch (const NotFinite&) {
+    return false;
+  }
+  return all_finite(state);
 }
 
 // takes finer steps if there are joints: what they hold swings faster than free bodies fly

@@ -343,6 +343,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   static constexpr double kNever = 2;  // a part of the interval
   double advance_to_event(State<D>& state, double t, double h, bool& cut);
   void integrate(State<D>& state, double t, double h);
+  bool integrates(State<D>& state, double t, double h);
   void build_rows(const State<D>& state, double t);
   double first_event(const State<D>& state, double h, Couple& first, bool& passes, const Constraint*& stops);
   double closing_time(const State<D>& state, double h, Couple couple);
