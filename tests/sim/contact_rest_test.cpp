@@ -236,9 +236,10 @@ TEST(ContactRest, ForcesInRandomHeapsObeyTheConeAtEveryInstant) {
 }
 
 TEST(ContactRest, HeapsComeToRestAndLieInEachOtherByAMillionthAtMost) {
-  for (const int seed : {0, 2}) {
+  // 3: two islands that touch and bear nothing come to rest one after the other
+  for (const int seed : {0, 2, 3}) {
     const World<2> world = heap(seed, 9);
-    const State<2> now = stepped(world, 3600);
+    const State<2> now = stepped(world, 4200);
     EXPECT_LT(deepest(now), 3e-7) << seed;
     for (int i = 0; i < 9; ++i) {
       EXPECT_TRUE(now.frozen[i]) << seed << ' ' << i << ' ' << now.v[i].norm();

@@ -12,6 +12,12 @@
 
 namespace obscura::sim {
 
+namespace {
+
+constexpr double kStill = 0.1;  // s: what has not moved for so long is still
+
+}  // namespace
+
 // wakes what something awake touches or holds. True where it did
 template <int D>
 bool ExactSolver<D>::wake_reached(State<D>& state) {
@@ -19,7 +25,18 @@ bool ExactSolver<D>::wake_reached(State<D>& state) {
   if (std::none_of(bodies.begin(), bodies.end(), [&](int body) { return state.frozen[body] != 0; }))
     return false;
   scratch_.near.clear();
+  // What only lies beside, and is as still itself, wakes nothing: two islands would wake each other in turns.
+  const auto still = [&](int body) {
+    return body >= 0 && !state.frozen[body] && state.quiet[body] >= kStill;
+  };
+  const auto bears = [&](const ContactKey& key) {
+    const auto at =
+        std::lower_bound(state.contacts.begin(), state.contacts.end(), key,
+                         [](const Contact<D>& contact, const ContactKey& of) { return contact.key < of; });
+    return at != state.contacts.end() && at->key == key && at->touching != ContactMode::open;
+  };
   for (const ContactCandidate<D>& gap : candidates_) {
+    if ((still(gap.key.a) || still(gap.key.b)) && !bears(gap.key)) continue;
     // all of them touch
     scratch_.near.emplace_back();
     scratch_.near.back().key = gap.key, scratch_.near.back().gap = -limits_.touching_gap;

@@ -13,7 +13,8 @@ namespace {
 constexpr double kOver = 1e-6;      // of the scale: how far features that bear may be apart
 constexpr double kFeature = 1e-13;  // of an interval
 constexpr double kPast =
-    4e-10;  // of the larger body: so far behind an edge a corner is past it, see collide()
+    4e-10;                    // of the larger body: so far behind an edge a corner is past it, see collide()
+constexpr double kApart = 4;  // touching gaps
 constexpr double kLook = 1e-3;     // of the way: over so much of it what leaves a face is seen to slide,
 constexpr double kLastWay = 1e-5;  // or so far, of the smaller body
 
@@ -75,12 +76,11 @@ double ExactSolver<D>::end_of_faces(const State<D>& state, Couple couple, double
   return shrinks > 0 && left < shrinks ? low + part * left / shrinks : low;
 }
 
-// Under `event` the part of the way after which a corner that bears has left its face, as of what slides over
-// an edge: its features are others from there on.
+// The part of the way after which a corner that bears has left its face, as of what slides over an edge: its
+// features are others from there on.
 template <int D>
 double ExactSolver<D>::feature_time(const State<D>& state, double h) {
   double first = kNever;
-  if (model_.collision != Collision::event) return first;
   for (const Constraint& constraint : constraints_) {
     if (constraint.kind != Constraint::Kind::contact || !active(constraint)) continue;
     const ContactCandidate<D>& candidate = candidates_[constraint.of];
@@ -101,7 +101,7 @@ double ExactSolver<D>::feature_time(const State<D>& state, double h) {
     const double size = std::max(limits_.bounding_radius[couple.a], limits_.bounding_radius[couple.b]);
     const Vec<D> place = evaluate(candidate, poses_[couple.a], poses_[couple.b]).point;
     const double slides = slid(state, couple, place, h, 1, 0).norm();
-    if (slides > kPast * size && !there(1) && there(0)) {
+    if (slides > std::max(kPast * size, kApart * limits_.touching_gap) && !there(1) && there(0)) {
       double low = 0, high = 1;
       while (high - low > kFeature) {
         const double middle = 0.5 * (low + high);
@@ -109,7 +109,8 @@ double ExactSolver<D>::feature_time(const State<D>& state, double h) {
       }
       there(high);
       if (alone) high = std::max(high, end_of_faces(state, couple, h, low));
-      const double past = high + kPast * size / slides;
+      // so far that it does not touch what is beside the face
+      const double past = high + std::max(kPast * size, kApart * limits_.touching_gap) / slides;
       if (past < 1) first = std::min(first, past);
     }
     for (const int body : {couple.a, couple.b})
