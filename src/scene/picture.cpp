@@ -13,6 +13,8 @@ namespace obscura::scene {
 
 namespace {
 
+constexpr double kLeastSide = 9.0 / 16;  // of the widest: no side of what a film shows is less
+
 // a place of the plane at z = 0
 template <int D>
 sim::Vec3 in_space(const sim::Vec<D>& v) {
@@ -368,8 +370,10 @@ draw::Extent extent(const Room<D>& room, const sim::World<D>& world) {
   if (points.empty()) points = {Vec(Vec::Zero())};
   Vec low = points.front(), high = points.front();
   for (const Vec& point : points) low = low.cwiseMin(point), high = high.cwiseMax(point);
-  // a tenth around, and a metre at least
-  const Vec size = ((high - low) * 1.2).cwiseMax(1.0), middle = (low + high) / 2;
+  // a tenth around, and as high as a film that is so wide; of a point a metre
+  const Vec around = (high - low) * 1.2, middle = (low + high) / 2;
+  const double widest = around.maxCoeff();
+  const Vec size = around.cwiseMax(widest > 0 ? kLeastSide * widest : 1);
   return {in_space<D>(middle - size / 2), in_space<D>(middle + size / 2)};
 }
 

@@ -62,6 +62,15 @@ void SpaceIterative::foresee_slip(int number) {
   if (!touch.slides || !(rubs > 0)) return;
   const auto tied = [&](int body) { return body < int(model_.bodies.size()) && joints_.has(body); };
   if (tied(touch.a) || tied(touch.b)) return;
+  // those of some touches of a pair, whose others are new, are none
+  const auto beside = [&](int i) {
+    return i >= 0 && i < int(touches_.size()) && touches_[std::size_t(i)].a == touch.a &&
+           touches_[std::size_t(i)].b == touch.b;
+  };
+  for (int i = number - 1; beside(i); --i)
+    if (!known_force_[std::size_t(i)]) return;
+  for (int i = number + 1; beside(i); ++i)
+    if (!known_force_[std::size_t(i)]) return;
   const Vec<D> changes = slip(touch) - free_slips_[std::size_t(number)];
   touch.half_change += 0.5 * (changes - touch.n * touch.n.dot(changes) -
                               touch.tangent_impulse * (touch.tangent_impulse.dot(changes) / rubs));
