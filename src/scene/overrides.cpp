@@ -216,6 +216,13 @@ std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Diag
       later.push_back({found.kind, found.table, int(std::min<std::int64_t>(*copy, 1'000'000'000)), rest,
                        std::move(*value), place});
     } else {
+      // what says how heavy it is takes the place of what said so
+      const std::string& set = rest.front().name;
+      if (const char* other = set == "mass"      ? "density"
+                              : set == "density" ? "mass"
+                                                 : nullptr;
+          other && rest.size() == 1)
+        std::erase_if(table.table(), [&](const auto& entry) { return entry.key == other; });
       write(table, found.kind, rest, std::move(*value), place, dim, complaints);
     }
   }

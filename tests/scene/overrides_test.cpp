@@ -83,6 +83,16 @@ TEST(Overrides, OneCopyOfMany) {
   }
 }
 
+TEST(Overrides, OfAMassTakesThePlaceOfADensityAndTheOtherWayRound) {
+  const auto mass = [](const std::string& has, const std::string& set) {
+    return std::get<sim::World<2>>(parse("[[box]]\nname = 'b'\nsize = [1, 1]\n" + has, "a.toml", {set}).world)
+        .model.bodies[0]
+        .mass;
+  };
+  EXPECT_EQ(mass("density = 3\n", "b.mass=2"), 2);
+  EXPECT_EQ(mass("mass = 2\n", "b.density=3"), 3);
+}
+
 TEST(Overrides, TheLastOneWins) { EXPECT_EQ(with({"seed=1", "seed=2"}).seed, 2u); }
 
 TEST(Overrides, AreCheckedAsTheFileIs) {
