@@ -13,7 +13,7 @@ namespace obscura::scene {
 
 namespace {
 
-constexpr double kLeastSide = 9.0 / 16;  // of the widest: no side of what a film shows is less
+constexpr double kLeastSide = 9.0 / 16;  // of the widest: no side of a small scene is less
 
 // a place of the plane at z = 0
 template <int D>
@@ -370,10 +370,10 @@ draw::Extent extent(const Room<D>& room, const sim::World<D>& world) {
   if (points.empty()) points = {Vec(Vec::Zero())};
   Vec low = points.front(), high = points.front();
   for (const Vec& point : points) low = low.cwiseMin(point), high = high.cwiseMax(point);
-  // a tenth around, and as high as a film that is so wide; of a point a metre
+  // a tenth around, and a metre at least; of what is smaller, as high as a film that is so wide
   const Vec around = (high - low) * 1.2, middle = (low + high) / 2;
   const double widest = around.maxCoeff();
-  const Vec size = around.cwiseMax(widest > 0 ? kLeastSide * widest : 1);
+  const Vec size = around.cwiseMax(widest > 0 ? std::min(1.0, kLeastSide * widest) : 1.0);
   return {in_space<D>(middle - size / 2), in_space<D>(middle + size / 2)};
 }
 

@@ -256,7 +256,8 @@ void Articulated<D>::advance(const std::vector<ChainState>& begun, double h, Sta
     Tree& tree = trees_[i];
     if (!tree.awake) continue;
     ChainState& posture = state.chain_states[i];
-    for (std::size_t j = 0; j < posture.v.size(); ++j) tree.rate[j] = h * posture.v[j];
+    for (std::size_t j = 0; j < posture.v.size(); ++j)
+      tree.rate[j] = 0.5 * h * (begun[i].v[j] + posture.v[j]);
     tree.chain().displace(begun[i].q, tree.rate, posture.q);
   }
   follow(state);

@@ -94,7 +94,8 @@ class Articulated {
   /// Adds `change` to the joint velocities of `state`; if `places`, to its joint coordinates.
   void jump(State<D>& state, std::span<const double> change, bool places) const;
 
-  /// Sets the joint coordinates of `state` to those in `begun` plus h (s) times the velocities in `state`.
+  /// Sets the joint coordinates of `state` to those in `begun` plus h (s) times the mean of the velocities in
+  /// `begun` and in `state`.
   void advance(const std::vector<ChainState>& begun, double h, State<D>& state);
 
   /// Sets the links' bodies of `state` from its chain_states, and computes the kinematics there.

@@ -53,6 +53,7 @@ typename ExactSolver<D>::Limits ExactSolver<D>::make_limits(const Model<D>& mode
   limits.rest_speed = event_mode ? limits.least_speed : std::max(limits.least_speed, 0.1 * g * h);
   limits.most_cuts = event_mode ? 2000 + 100 * int(model.bodies.size()) : 12;
   limits.most_openings = event_mode ? limits.most_cuts : 6;
+  limits.most_faces = event_mode ? limits.most_cuts : 6;
   limits.patience = event_mode ? 8 + int(model.bodies.size()) : 4;
   limits.short_step = event_mode ? 1.0 / 64 : 1.0 / 4;
   limits.budget = event_mode ? 1e300 : 1e7;
@@ -253,6 +254,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   progress_.forced.clear(), progress_.forced_again = false;
   progress_.jumps = h < 2 * kJumpPiece * step_length(model_.rate);
   progress_.rough = progress_.limited = false, progress_.work = 0, progress_.searches = 0;
+  progress_.faces = limits_.most_faces;
   progress_.openings = limits_.most_openings, progress_.released.reset(), progress_.unclear.clear();
   const bool event_mode = model_.collision == Collision::event;
   const bool small = active_.subset.bodies.size() <= kSmallGroup;
@@ -514,6 +516,17 @@ double ExactSolver<D>::motor_power() const {
   return sum;
 }
 
+// whether no row at hand holds bodies to what does not move, and none of them is a link
+template <int D>
+bool ExactSolver<D>::floats() const {
+  const auto moves = [&](int body) { return body >= 0 && response_.moves(body); };
+  return active_.subset.chains.empty() && std::all_of(rows_.begin(), rows_.end(), [&](const Row<D>& row) {
+           return moves(row.a) && moves(row.b) &&
+                  std::all_of(row.more.begin(), row.more.end(),
+                              [&](const RowSide<D>& side) { return moves(side.body); });
+         });
+}
+
 // the rest of a step at once: impulses instead of forces, so that nothing that touches comes closer at its
 // end
 template <int D>
@@ -556,12 +569,15 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
     if (constraint.kind == Constraint::Kind::motor)
       progress_.given += 0.5 * f_[constraint.first] * (constraint.began + row_velocity(constraint.first));
   }
-  // By the new velocities, symplectic: what forces at the old places give is no angular momentum, and what no
-  // longer closes stays apart.
+  // Where nothing holds them by the new velocities, symplectic: what forces at the old places give is no
+  // angular momentum. Else by the mean, by which heaps come to rest on what stands.
+  const double mean = floats() ? 0 : 0.5;
   for (const int body : members) {
-    state.x[body] += h * state.v[body];
+    state.x[body] += h * (state.v[body] + mean * (interval_.begun.v[body] - state.v[body]));
     if (const int k = turning(state, body); k >= 0)
-      state.turn[k] = turned<D>(interval_.begun.turn[k], AngularVec<D>(h * state.spin[k]));
+      state.turn[k] =
+          turned<D>(interval_.begun.turn[k],
+                    AngularVec<D>(h * (state.spin[k] + mean * (interval_.begun.spin[k] - state.spin[k]))));
   }
   chains.advance(interval_.begun.chain_states, h, state);
   for (const Constraint& constraint : constraints_) {

@@ -107,6 +107,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     double unit_speed = 0;                // m/s: sqrt(g L), or L a second
     int most_cuts = 0;                    // of a step, by one body among others
     int most_openings = 0;                // cuts of a step by what lets go
+    int most_faces = 0;                   // and by corners that leave their faces
     int patience = 0;                     // cuts of a step by one body before rest begins to grow
     double budget = 0;                    // rows^3 that a step may solve before it is done roughly
     double short_step = 0;                // of a step: what is done at once where there is no other way
@@ -153,6 +154,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     bool jumps = false;                       // a formula of the time jumps in this piece of a step
     double work = 0;                          // rows^3 solved
     double searches = 0;                      // how often more than once an interval couples were looked at
+    int faces = 0;                            // how many more corners that leave their faces may cut it
     int openings = 0;                         // how many more contacts that let go may cut it
     std::vector<ContactKey> unclear;          // contacts whose forces do not predict their release
     std::vector<std::pair<int, int>> forced;  // pairs that open contacts would let penetrate at once: held
@@ -229,6 +231,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void save(const State<D>& state, Motion& motion) const;
   void restore(const Motion& motion, State<D>& state) const;
   void hold_again(State<D>& state);
+  bool floats() const;
   void step_by_impulses(State<D>& state, double t, double h);
   double time_unseen(const State<D>& state) const;
   void write_contacts(State<D>& state);

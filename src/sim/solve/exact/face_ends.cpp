@@ -13,10 +13,11 @@ namespace {
 constexpr double kOver = 1e-6;      // of the scale: how far features that bear may be apart
 constexpr double kFeature = 1e-13;  // of an interval
 constexpr double kPast =
-    4e-10;                    // of the larger body: so far behind an edge a corner is past it, see collide()
-constexpr double kApart = 4;  // touching gaps
-constexpr double kLook = 1e-3;     // of the way: over so much of it what leaves a face is seen to slide,
-constexpr double kLastWay = 1e-5;  // or so far, of the smaller body
+    4e-10;  // of the larger body: so far behind an edge a corner is past it, see collide()
+constexpr double kMostWork = 0.25;  // of what a step of `contact` may cost
+constexpr double kApart = 4;        // touching gaps
+constexpr double kLook = 1e-3;      // of the way: over so much of it what leaves a face is seen to slide,
+constexpr double kLastWay = 1e-5;   // or so far, of the smaller body
 
 // whether a candidate is a corner at a face, or in space two edges that cross
 template <int D>
@@ -77,10 +78,13 @@ double ExactSolver<D>::end_of_faces(const State<D>& state, Couple couple, double
 }
 
 // The part of the way after which a corner that bears has left its face, as of what slides over an edge: its
-// features are others from there on.
+// features are others from there on. In `contact` few times a step, and not where much meets.
 template <int D>
 double ExactSolver<D>::feature_time(const State<D>& state, double h) {
   double first = kNever;
+  if (model_.collision != Collision::event &&
+      (progress_.faces == 0 || progress_.work > kMostWork * limits_.budget))
+    return first;
   for (const Constraint& constraint : constraints_) {
     if (constraint.kind != Constraint::Kind::contact || !active(constraint)) continue;
     const ContactCandidate<D>& candidate = candidates_[constraint.of];
@@ -116,6 +120,7 @@ double ExactSolver<D>::feature_time(const State<D>& state, double h) {
     for (const int body : {couple.a, couple.b})
       if (shifts(body)) poses_[body] = end_pose(state, body);
   }
+  if (first < kNever) --progress_.faces;
   return first;
 }
 
