@@ -22,8 +22,9 @@
 ///
 /// Everything that fails throws an Error of one of the kinds below. Objects of one kind may be used in
 /// several threads at once, each object by one thread at a time: a World, Renderer or Movie that is at work
-/// throws UsageError to another thread, and to a force that asks its own world. So does one that was moved into
-/// another. After fork() a child may use scenes and worlds of its parent; a Renderer or Movie it makes itself.
+/// throws UsageError to another thread, and to a force that asks its own world. So does one that was moved
+/// into another. After fork() a child may use scenes and worlds of its parent; a Renderer or Movie it makes
+/// itself.
 
 /// \example film.cpp
 /// A film, frame by frame.

@@ -79,27 +79,5 @@ TEST(Blows, ToTheUpperOfTwoBoxesAreFollowedByTheDirectSolverAtEveryRate) {
   }
 }
 
-// A ball slides off the end of a plank so fast that it leaves the corner at once, v^2/R > g. In space a face
-// ends a millionth of the size later.
-TEST(Blows, AreNoneWhereABallSlidesOffAnEdge) {
-  for (const int dimension : {2, 3}) {
-    for (const int rate : {60, 240, 960}) {
-      const char *z = dimension == 3 ? ", 0" : "", *deep = dimension == 3 ? ", 2" : "";
-      const std::string smooth = "friction = 0\nelasticity = 0\n";
-      const TextRun run(
-          fmt::format("[room]\nwalls = 'ground'\nsize = [20, 10{}]\ngravity = [0, -9.81{}]\n"
-                      "[physics]\nsolver = 'direct'\nrate = {}\n",
-                      dimension == 3 ? ", 20" : "", z, rate) +
-          fmt::format("[[box]]\nname = 'plank'\nposition = [0, 0.5{}]\nsize = [2, 1{}]\nmass = 100\n{}", z,
-                      deep, smooth) +
-          disc("b", 1, 0.1,
-               fmt::format("position = [0.4967, 1.1{}]\nvelocity = [2, 0{}]\n{}", z, z, smooth)));
-      const double t = 0.3 - (1 - 0.4967) / 2;
-      EXPECT_NEAR(run.at(0.3).bodies[number_of(run, "b")].velocity.y(), -9.81 * t, 1e-5)
-          << dimension << " at " << rate;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace obscura::scene

@@ -114,6 +114,17 @@ TEST(Values, AnOpenRoomIsAsLargeAsWhatIsInIt) {
   EXPECT_NEAR(it.plane().model.mice[0].rest_length, 20.0 / 480 * 4.8, 1e-12);
 }
 
+// no less than it is high as a film, and no metre around it
+TEST(Values, AnOpenRoomOfTinyThingsIsTiny) {
+  const draw::Extent it =
+      scene(
+          "[room]\nwalls = [{ point = [0, 0], normal = [0, 1] }]\n[[particle]]\nposition = "
+          "[0, 0.001]\n[[particle]]\nposition = [0.01, 0.001]\n")
+          .extent;
+  EXPECT_NEAR(it.high.x() - it.low.x(), 0.012, 1e-12);
+  EXPECT_NEAR(it.high.y() - it.low.y(), 9.0 / 16 * 0.012, 1e-12);
+}
+
 TEST(Values, TheMouseRestsAtTwentyReferencePixelsWhateverThePicture) {
   for (const char* film : {"", "[film]\nsize = [640, 480]\n"}) {
     const Scene it =

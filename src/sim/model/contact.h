@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <compare>
 #include <cstdint>
+#include <span>
 
 #include "sim/math/vec.h"
 
@@ -37,5 +39,14 @@ struct Contact {
 
   bool operator==(const Contact&) const = default;
 };
+
+/// That of a key among contacts in the order of their keys; null: there is none.
+template <int D>
+const Contact<D>* find_contact(std::span<const Contact<D>> contacts, const ContactKey& key) {
+  const auto at =
+      std::lower_bound(contacts.begin(), contacts.end(), key,
+                       [](const Contact<D>& contact, const ContactKey& of) { return contact.key < of; });
+  return at != contacts.end() && at->key == key ? &*at : nullptr;
+}
 
 }  // namespace obscura::sim

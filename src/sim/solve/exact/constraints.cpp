@@ -294,9 +294,8 @@ void ExactSolver<D>::warm_start_rows(double h) {
   for (const Constraint& constraint : constraints_) {
     if (constraint.kind != Constraint::Kind::contact) continue;
     const ContactKey& key = candidates_[constraint.of].key;
-    const auto known = std::lower_bound(progress_.known->begin(), progress_.known->end(), key,
-                                        [](const Contact<D>& c, const ContactKey& k) { return c.key < k; });
-    if (known == progress_.known->end() || known->key != key) continue;
+    const Contact<D>* known = find_contact<D>(*progress_.known, key);
+    if (!known) continue;
     for (int i = 0; i < D; ++i)
       warm_[constraint.first + i] = h * known->force.dot(rows_[constraint.first + i].along);
     ConeMode<D>& mode = modes_[constraint.block];

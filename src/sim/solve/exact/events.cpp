@@ -276,8 +276,7 @@ double ExactSolver<D>::stopping_length(State<D>& state, double t, const Constrai
                                        double high) {
   const auto left_after = [&](double length) {
     begin_again(state, t);
-    integrate(state, t, length);
-    if (!all_finite(state)) return -1e300;
+    if (!integrates(state, t, length)) return -1e300;
     build_rows(state, t + length);
     return slip_left(which);
   };

@@ -22,7 +22,6 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kCreep = 1e-6;  // of sqrt(g L)
 // of the speeds of two bodies: how much of their contact's taking back energy may change
 constexpr double kPerturbed = 1e-3;
 constexpr double kSunk = 0.1;        // of the thinnest: how far two may come into each other in one piece
@@ -385,11 +384,8 @@ void ExactSolver<D>::hold_again(State<D>& state) {
     if (constraint.kind == Kind::joint) hold(constraint, constraint.rows);
     if (constraint.kind != Kind::contact) continue;
     const ContactKey& key = candidates_[constraint.of].key;
-    const auto known =
-        std::lower_bound(progress_.known->begin(), progress_.known->end(), key,
-                         [](const Contact<D>& contact, const ContactKey& at) { return contact.key < at; });
-    if (known == progress_.known->end() || known->key != key || known->touching == ContactMode::open)
-      continue;
+    const Contact<D>* known = find_contact<D>(*progress_.known, key);
+    if (!known || known->touching == ContactMode::open) continue;
     double off2 = 0;
     const bool sticks = known->touching != ContactMode::slide && material(key).static_friction > 0;
     for (int row = constraint.first; row < constraint.first + (sticks ? D : 1); ++row)
@@ -514,100 +510,6 @@ double ExactSolver<D>::motor_power() const {
       sum += f_[constraint.first] * row_velocity(constraint.first);
   }
   return sum;
-}
-
-// whether no row at hand holds bodies to what does not move, and none of them is a link
-template <int D>
-bool ExactSolver<D>::floats() const {
-  const auto moves = [&](int body) { return body >= 0 && response_.moves(body); };
-  return active_.subset.chains.empty() && std::all_of(rows_.begin(), rows_.end(), [&](const Row<D>& row) {
-           return moves(row.a) && moves(row.b) &&
-                  std::all_of(row.more.begin(), row.more.end(),
-                              [&](const RowSide<D>& side) { return moves(side.body); });
-         });
-}
-
-// the rest of a step at once: impulses instead of forces, so that nothing that touches comes closer at its
-// end
-template <int D>
-void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
-  pose_driven(t);
-  find_contacts(state, limits_.touching_gap);
-  update_poses(state);
-  collect_constraints(state);
-  save(state, interval_.begun);
-  build_blocks(true, h);
-  find_islands();
-  const auto rate = dynamics_.accelerations(state, t);
-  predict_velocities(rate, h);
-  for (Constraint& constraint : constraints_) constraint.began = row_velocity(constraint.first);
-  // Start from the forces of the step before only if nearly all is at rest: with them the iterations would go
-  // on holding bodies that have begun to fall.
-  double fastest = 0;
-  for (int i = 0; i < int(rows_.size()); ++i) fastest = std::max(fastest, std::abs(row_velocity(i)));
-  const auto& members = dynamics_.bodies();
-  for (std::size_t i = 0; i < members.size(); ++i) {
-    const int body = members[i];
-    state.v[body] += h * Eigen::Map<const Vec<D>>(rate.data() + D * i);
-    if (const int at = dynamics_.spin_start(int(i)); at >= 0)
-      state.spin[turning(state, body)] +=
-          h * to_room<D>(poses_[body].room_from_body, Eigen::Map<const AngularVec<D>>(rate.data() + at));
-  }
-  Articulated<D>& chains = dynamics_.chains();
-  scratch_.chain_change.assign(rate.begin() + dynamics_.chain_start(),
-                               rate.begin() + dynamics_.chain_start() + chains.size());
-  for (double& change : scratch_.chain_change) change *= h;
-  chains.jump(state, scratch_.chain_change, false);
-  warm_start_rows(fastest < kCreep * limits_.unit_speed ? h : 0);
-  if (!solve()) solve_roughly();
-  for (int i = 0; i < kMostRubs && rub(i); ++i)
-    if (!solve()) solve_roughly();
-  apply_impulses(state, false);
-  for (int i = 0; i < int(rows_.size()); ++i) progress_.given += f_[i] * given(i);
-  update_poses(state);
-  for (const Constraint& constraint : constraints_) {
-    if (constraint.kind == Constraint::Kind::motor)
-      progress_.given += 0.5 * f_[constraint.first] * (constraint.began + row_velocity(constraint.first));
-  }
-  // Where nothing holds them by the new velocities, symplectic: what forces at the old places give is no
-  // angular momentum. Else by the mean, by which heaps come to rest on what stands.
-  const double mean = floats() ? 0 : 0.5;
-  for (const int body : members) {
-    state.x[body] += h * (state.v[body] + mean * (interval_.begun.v[body] - state.v[body]));
-    if (const int k = turning(state, body); k >= 0)
-      state.turn[k] =
-          turned<D>(interval_.begun.turn[k],
-                    AngularVec<D>(h * (state.spin[k] + mean * (interval_.begun.spin[k] - state.spin[k]))));
-  }
-  chains.advance(interval_.begun.chain_states, h, state);
-  for (const Constraint& constraint : constraints_) {
-    if (!course_ || constraint.kind != Constraint::Kind::contact || f_[constraint.first] == 0) continue;
-    const ContactKey& key = candidates_[constraint.of].key;
-    if (course_->watches(key.a) || course_->watches(key.b))
-      course_->meetings.push_back({key.a, key.b, stepped_, stepped_ + h});
-  }
-  f_ /= h;
-  record_forces(state);
-
-  // push apart bodies that overlap now and did not before
-  pose_driven(t + h);
-  find_contacts(state, limits_.touching_gap);
-  collect_constraints(state);
-  build_blocks(true);
-  find_islands();
-  for (const Constraint& constraint : constraints_) {
-    if (constraint.kind == Constraint::Kind::contact && constraint.off >= -limits_.touching_gap)
-      modes_[constraint.block].kind = ModeKind::open;
-    if (constraint.kind == Constraint::Kind::contact && constraint.off < -limits_.touching_gap)
-      modes_[constraint.block].kind = ModeKind::slide;
-    if (constraint.kind == Constraint::Kind::motor || constraint.kind == Constraint::Kind::friction)
-      modes_[constraint.block].kind = ModeKind::at_lower;
-    if (constraint.kind == Constraint::Kind::rope || constraint.kind == Constraint::Kind::lower ||
-        constraint.kind == Constraint::Kind::upper)
-      modes_[constraint.block].kind =
-          constraint.off < -limits_.touching_gap ? ModeKind::free : ModeKind::at_lower;
-  }
-  project_state(state, h, true);
 }
 
 template class ExactSolver<2>;

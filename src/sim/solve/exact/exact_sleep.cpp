@@ -30,10 +30,8 @@ bool ExactSolver<D>::wake_reached(State<D>& state) {
     return body >= 0 && !state.frozen[body] && state.quiet[body] >= kStill;
   };
   const auto bears = [&](const ContactKey& key) {
-    const auto at =
-        std::lower_bound(state.contacts.begin(), state.contacts.end(), key,
-                         [](const Contact<D>& contact, const ContactKey& of) { return contact.key < of; });
-    return at != state.contacts.end() && at->key == key && at->touching != ContactMode::open;
+    const Contact<D>* known = find_contact<D>(state.contacts, key);
+    return known && known->touching != ContactMode::open;
   };
   for (const ContactCandidate<D>& gap : candidates_) {
     if ((still(gap.key.a) || still(gap.key.b)) && !bears(gap.key)) continue;

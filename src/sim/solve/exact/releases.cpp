@@ -108,8 +108,7 @@ double ExactSolver<D>::release_length(State<D>& state, double t, const Constrain
   const double slight = 0.5 * interval_.slight;
   const auto reserve_after = [&](double length) {
     begin_again(state, t);
-    integrate(state, t, length);
-    const double reserve = all_finite(state) ? force_reserve(which, f_) : -1e300;
+    const double reserve = integrates(state, t, length) ? force_reserve(which, f_) : -1e300;
     return std::isfinite(reserve) ? reserve + slight : -1e300;
   };
   const double at_low = force_reserve(which, f_) + slight;
@@ -187,8 +186,7 @@ double ExactSolver<D>::lawful_length(State<D>& state, double t, double length) {
   const double soon = kSoon * length;
   const auto let_go_after = [&](double part) {
     begin_again(state, t);
-    integrate(state, t, part);
-    return all_finite(state) ? let_go_at(state, t + part) : 0;
+    return integrates(state, t, part) ? let_go_at(state, t + part) : 0;
   };
   double low = 0, later = 0, at_later = 0;
   for (int i = 0; i < kMostSecants && high - low > soon; ++i) {

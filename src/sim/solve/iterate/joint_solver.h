@@ -349,10 +349,11 @@ class JointSolver final : public System {
   bool release();
   bool drop_puller();
   bool overrun(double t);
-  void note_excess(double t);
+  void note_ends(double t);
   bool leaps(const State<D>& state, double h) const;
   double least_left(double t);
   double slow_end(int joint) const;
+  bool goes_round(int joint, double way) const;
   double strike(State<D>& state, double t);
   double push_known(std::span<double> v_rate);
   void push_rates(const Row<D>& row, double f, std::span<double> v_rate);

@@ -110,13 +110,13 @@ double JointSolver<D>::step(ForwardDynamics<D>& dynamics, Integrate* integrate, 
     done += until;
     if (stops) work += strike(state, t + done);
     if (h - done <= kNothingLeft * h) {
-      note_excess(t + h), end_motors();
+      note_ends(t + h), end_motors();
       loosen_all();
       return work;
     }
     if (choose_holding(t + done, h)) work += strike(state, t + done), choose_holding(t + done, h);
   }
-  note_excess(t + h), end_motors();
+  note_ends(t + h), end_motors();
   loosen_all();
   return work + given;
 }
@@ -253,7 +253,7 @@ double JointSolver<D>::excess(const Stop& stop, double t) {
 
 // where the step ends
 template <int D>
-void JointSolver<D>::note_excess(double t) {
+void JointSolver<D>::note_ends(double t) {
   for (Stop& stop : stops_) {
     stop.excess = excess(stop, t);
     if (stop.load <= upper) stop.ends = left(stop, t);
@@ -264,6 +264,12 @@ void JointSolver<D>::note_excess(double t) {
 template <int D>
 double JointSolver<D>::left(const Stop& stop, double t) {
   return stop.load > upper ? stop.sign * excess(stop, t) : left(held_[std::size_t(stop.block)], stop.load);
+}
+
+// whether a joint's coordinate has gone so far that it is told anew: an angle in space, within a turn
+template <int D>
+bool JointSolver<D>::goes_round(int joint, double way) const {
+  return D == 3 && equations<D>(model_.joints[std::size_t(joint)].kind).angle && way > kHalfTurn;
 }
 
 // the stops that were passed in an interval that ended at t, into overrun_; true if there are any
@@ -284,9 +290,7 @@ bool JointSolver<D>::overrun(double t) {
       if (acting.load > upper) overrun_.push_back(i);
       continue;
     }
-    // an angle in space is told within a turn
-    const bool round = D == 3 && equations<D>(model_.joints[std::size_t(joint)].kind).angle;
-    if (round && stop.left - now > kHalfTurn) continue;
+    if (goes_round(joint, stop.left - now)) continue;
     Row<D> row;
     bounded_row(stop.block, stop.load, row);
     const double ends = speed(row, at_);
@@ -573,7 +577,8 @@ void JointSolver<D>::keep_row_speeds() {
     Hold& hold = holds_[std::size_t(held_[std::size_t(stop.block)])];
     if (stop.load <= upper) {
       const double way = stop.ends - left(stop, 0);
-      hold.bends[stop.load] = std::min(0.0, speed(row, at_) - way / span_);
+      if (!goes_round(held_[std::size_t(stop.block)], std::fabs(way)))
+        hold.bends[stop.load] = std::min(0.0, speed(row, at_) - way / span_);
       continue;
     }
     hold.knows = true, hold.aims[stop.load] = speed(row, at_) - stop.excess;

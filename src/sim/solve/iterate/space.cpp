@@ -274,8 +274,8 @@ void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
   });
 }
 
-// Whether a touch that closes with `before` m/s ends faster than it goes on the way, by joints that whip, and
-// meets after the substep: its row sees the end alone.
+// Whether a touch that closes with `before` m/s ends faster than it goes on the way, and so meets only after
+// the substep: its row sees the end alone.
 bool SpaceIterative::meets_later(const ContactConstraint& touch, double before, double h) const {
   const double ends = touch.n.dot(slip(touch) - touch.belt - touch.drift);
   return touch.gap + h * ends < 0 && touch.gap + 0.5 * h * (before + ends) > 0;

@@ -183,6 +183,7 @@ class SpaceIterative final : public Iterative<3> {
     return rounds_[touches_[touch].a] + rounds_[touches_[touch].b] + touches_[touch].renewals;
   }
   double margin(int body, double h) const;
+  double thrown_way(int body, double h) const;
   void foresee_blows(double h);
   double passing_speed(int a, int b) const;
   double pair_margin(int a, int b, double h) const;
@@ -292,9 +293,9 @@ class SpaceIterative final : public Iterative<3> {
 
   std::vector<BodyMotion<D>> stances_;
   std::vector<double> margin_,
-      swing_;                   // bodies: m, see margin(); m/s, of its farthest point by its spin alone
-  std::vector<double> thrown_;  // bodies: m/s, how fast blows of the substep may make them
-  std::vector<Bounds<D>> bounds_, wide_;  // of bodies in a step; and those that near_pairs_ are of
+      swing_;  // bodies: m, see margin(); m/s, of its farthest point by its spin alone
+  std::vector<double> thrown_, next_thrown_;  // bodies: m/s, how fast blows of the substep may make them
+  std::vector<Bounds<D>> bounds_, wide_;      // of bodies in a step; and those that near_pairs_ are of
   std::vector<std::pair<int, int>> near_pairs_;
   std::vector<Apart> apart_;    // one for each
   std::vector<double> turned_;  // bodies: rad, how far each has turned since the first step

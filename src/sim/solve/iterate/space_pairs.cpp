@@ -12,12 +12,13 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kSlow = 0.01;    // of the narrower body: so far a pair moves with the same features
-constexpr double kWider = 0.05;   // bounding radii: how far a body may come before pairs are sought anew
-constexpr double kSpare = 0.02;   // of their bounding radius: what two may come nearer by being struck
-constexpr double kThrown = 0.1;   // bounding radii: how far at most a body comes in a substep by being struck
-constexpr double kFarther = 1.5;  // times its speed: how far a body may come in a step
-constexpr double kRounding = 1e-12;  // rad
+constexpr double kSlow = 0.01;   // of the narrower body: so far a pair moves with the same features
+constexpr double kWider = 0.05;  // bounding radii: how far a body may come before pairs are sought anew
+constexpr double kSpare = 0.02;  // of their bounding radius: what two may come nearer by being struck
+constexpr double kThrown = 0.1;  // bounding radii: how far at most a body comes in a substep by being struck
+constexpr double kFasterThrown = 1.05;  // times as fast: less is not passed on again
+constexpr double kFarther = 1.5;        // times its speed: how far a body may come in a step
+constexpr double kRounding = 1e-12;     // rad
 
 }  // namespace
 
@@ -32,36 +33,48 @@ double SpaceIterative::margin(int body, double h) const {
   return h * (kFarther * swiftness(body) + 2 * g_ * h) + struck + 1e-3 * bounding_radius_[body];
 }
 
+// how far a body may come by being thrown, m
+double SpaceIterative::thrown_way(int body, double h) const {
+  return std::min(h * kFarther * thrown_[body], kThrown * bounding_radius_[body]);
+}
+
 // How fast blows of the substep may throw bodies, one after another, into thrown_, and wider margins for
 // that, with the pairs that are near by these: what strikes passes on
 //   v' = (1 + e) v m / (m + m')
+// and no more than twice what the fastest has. From round to round, so that it does not hang on the order of
+// pairs.
 void SpaceIterative::foresee_blows(double h) {
   const int n = int(model_.bodies.size());
   thrown_.resize(std::size_t(n));
-  for (int i = 0; i < n; ++i)
-    thrown_[std::size_t(i)] = inactive_[i] && drives_.number(i) < 0 ? 0 : swiftness(i);
+  double fastest = 0;
+  for (int i = 0; i < n; ++i) {
+    thrown_[i] = inactive_[i] && drives_.number(i) < 0 ? 0 : swiftness(i);
+    fastest = std::max(fastest, thrown_[i]);
+  }
   const auto pass_on = [&](int from, int to) {
-    const double speed = thrown_[std::size_t(from)];
-    if (!(speed > thrown_[std::size_t(to)]) || inactive_[to] || drives_.number(to) >= 0) return false;
-    const Body<D>&a = model_.bodies[std::size_t(from)], &b = model_.bodies[std::size_t(to)];
+    if (!(thrown_[from] > thrown_[to]) || inactive_[to] || drives_.number(to) >= 0) return;
+    const Body<D>&a = model_.bodies[from], &b = model_.bodies[to];
     const double share = drives_.number(from) >= 0 || joints_.has(from) ? 1 : a.mass / (a.mass + b.mass);
-    const double thrown = (1 + std::max(a.elasticity, b.elasticity)) * share * speed;
-    // slow ones have room enough
-    if (!(thrown > thrown_[std::size_t(to)]) || !(h * kFarther * thrown > margin_[to])) return false;
-    thrown_[std::size_t(to)] = thrown;
-    const double margin = std::min(h * kFarther * thrown, kThrown * bounding_radius_[to]);
-    if (margin > margin_[to]) {
-      const Vec<D> more = Vec<D>::Constant(margin - margin_[to]);
-      margin_[to] = margin, bounds_[to].lower -= more, bounds_[to].upper += more;
-    }
-    return true;
+    const double speed = (1 + std::max(a.elasticity, b.elasticity)) * share * thrown_[from];
+    next_thrown_[to] = std::max(next_thrown_[to], std::min(speed, 2 * fastest));
   };
   for (bool more = true; more;) {
     find_near();
-    more = false;
+    next_thrown_ = thrown_;
     for (const auto& [a, b] : near_pairs_) {
-      if (thrown_[std::size_t(a)] == thrown_[std::size_t(b)] || !bounds_[a].meets(bounds_[b])) continue;
-      more = pass_on(a, b) || pass_on(b, a) || more;
+      if (thrown_[a] == thrown_[b] || !bounds_[a].meets(bounds_[b])) continue;
+      pass_on(a, b), pass_on(b, a);
+    }
+    more = false;
+    for (int i = 0; i < n; ++i) {
+      // slow ones have room enough
+      if (!(next_thrown_[i] > kFasterThrown * thrown_[i]) || !(h * kFarther * next_thrown_[i] > margin_[i]))
+        continue;
+      thrown_[i] = next_thrown_[i], more = true;
+      const double margin = thrown_way(i, h);
+      if (!(margin > margin_[i])) continue;
+      const Vec<D> wider = Vec<D>::Constant(margin - margin_[i]);
+      margin_[i] = margin, bounds_[i].lower -= wider, bounds_[i].upper += wider;
     }
   }
 }
@@ -75,11 +88,7 @@ double SpaceIterative::passing_speed(int a, int b) const {
 // nearer, but for what strikes them meanwhile.
 double SpaceIterative::pair_margin(int a, int b, double h) const {
   const double farther = carries_.empty() ? 0 : farther_[a] + farther_[b];
-  const auto struck = [&](int body) {
-    return thrown_[body] > swiftness(body)
-               ? std::min(h * kFarther * thrown_[body], kThrown * bounding_radius_[body])
-               : 0;
-  };
+  const auto struck = [&](int body) { return thrown_[body] > swiftness(body) ? thrown_way(body, h) : 0; };
   return std::min(margin_[a] + margin_[b],
                   h * (passing_speed(a, b) + 2 * g_ * h) + farther +
                       std::max(kSpare * (bounding_radius_[a] + bounding_radius_[b]), struck(a) + struck(b)));
