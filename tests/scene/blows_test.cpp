@@ -79,5 +79,29 @@ TEST(Blows, ToTheUpperOfTwoBoxesAreFollowedByTheDirectSolverAtEveryRate) {
   }
 }
 
+// A ball pushes four boxes that touch along the ground. The sides where they touch bear nothing but rounding,
+// and to let go of that is no event: one of 1e-10 s after another made a step take two seconds.
+TEST(Blows, WhereBoxesInARowBearNothingEndNoInterval) {
+  const auto ends = [](const char* rules, int dimension) {
+    const bool space = dimension == 3;
+    const std::string manner = "elasticity = 0.2\nfriction = 0.3\n";
+    const char *z = space ? ", 0" : "", *deep = space ? ", 0.3" : "";
+    std::string text = fmt::format("[room]\nsize = [12, 6{}]\ncorner = [-6, 0{}]\n[physics]\n{}\n",
+                                   space ? ", 20" : "", space ? ", -10" : "", rules);
+    for (int i = 0; i < 4; ++i)
+      text += fmt::format("[[box]]\nname = 'a{}'\nsize = [0.3, 0.3{}]\nmass = 1\nposition = [{}, 0.15{}]\n{}",
+                          i, deep, 0.3 * i, z, manner);
+    text += disc("b", 2, 0.15, fmt::format("position = [-1, 0.15{}]\nvelocity = [5, 0{}]\n", z, z) + manner);
+    const TextRun run(text);
+    return run.at(0.3).bodies[number_of(run, "a3")].velocity.x();
+  };
+  for (const int dimension : {2, 3}) {
+    const double followed = ends("collision = 'event'\nrate = 60", dimension);
+    EXPECT_NEAR(followed, dimension == 2 ? 1.3467309445 : 1.3446806682, 1e-9);
+    EXPECT_NEAR(ends("collision = 'event'\nrate = 240", dimension), followed, 1e-12);
+    EXPECT_NEAR(ends("solver = 'direct'\nrate = 600", dimension), followed, dimension == 2 ? 1e-9 : 1e-5);
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

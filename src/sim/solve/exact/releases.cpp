@@ -22,7 +22,8 @@ constexpr double kFar = 4;        // a ratio of two lengths, of which the geomet
 constexpr int kMostSecants = 100;
 constexpr double kDoubt =
     1e-11;  // of the largest force: the laws are solved where it is beyond them by so much
-constexpr double kSoon = 1e-7;  // of the interval: how exactly is known where the laws let go
+constexpr double kSoon = 1e-7;             // of the interval: how exactly is known where the laws let go
+constexpr double kNoAcceleration = 1e-11;  // of the fastest there is
 
 }  // namespace
 
@@ -161,6 +162,9 @@ double ExactSolver<D>::let_go_at(State<D>& state, double t) {
   if (found) {
     std::vector<double> ends(rate.begin(), rate.end());
     for (int i = 0; i < int(rows_.size()); ++i) add_accelerations(i, f_[i], ends);
+    double swiftest = 0;  // m/s^2, before and with the forces
+    for (std::size_t i = 0; i < D * dynamics_.bodies().size(); ++i)
+      swiftest = std::max({swiftest, std::abs(rate[i]), std::abs(ends[i])});
     for (const Constraint& one : constraints_) {
       const ModeKind now = modes_[std::size_t(one.block)].kind;
       const bool slips = mode_of(one) == ModeKind::stick && now == ModeKind::slide;
@@ -171,6 +175,7 @@ double ExactSolver<D>::let_go_at(State<D>& state, double t) {
                                              (i == 0 ? aim(one).rate : 0)));
       }
     }
+    if (fastest < kNoAcceleration * swiftest) fastest = 0;
   }
   blocks_.swap(scratch_.blocks), modes_.swap(scratch_.modes), f_.swap(scratch_.f);
   return fastest;
