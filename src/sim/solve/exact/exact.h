@@ -208,6 +208,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<Contact<D>> near;
     std::vector<ContactCandidate<D>> on_rails;
     std::vector<double> accelerations;  // one a body, m/s^2
+    std::vector<char> struck;           // one a body: at this instant, or what it touches
     std::vector<int> unheld;            // bodies of joints that broke
     std::vector<Vec<D>> placed;         // x before positions are projected
     std::vector<AngularVec<D>> turns;   // of bodies, by all rows together, rad
@@ -329,6 +330,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void each_island(std::vector<ConeMode<D>>& modes, Solve&& solve);
 
   // impacts.cpp
+  double closing_speed(const Constraint& constraint) const;
   double closing_speed() const;
   bool coming_apart() const;
   void resolve_contact_impacts(State<D>& state);
@@ -338,6 +340,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
 
   // exact_sleep.cpp
   bool wake_reached(State<D>& state);
+  bool wake_struck(State<D>& state);
   void wake_near_driven(State<D>& state, double t, double h);
   void put_to_sleep(State<D>& state, double t, double h);
   void find_accelerations(State<D>& state, double t);

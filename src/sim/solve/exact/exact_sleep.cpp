@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "sim/solve/exact/exact.h"
@@ -40,6 +41,55 @@ bool ExactSolver<D>::wake_reached(State<D>& state) {
     scratch_.near.back().key = gap.key, scratch_.near.back().gap = -limits_.touching_gap;
   }
   return sleep_.wake(state, scratch_.near, 0, 0);
+}
+
+// Wakes what touches something that is struck at this instant, through all that lies between: asleep it would
+// be a wall. By the rows at hand; true where it did.
+template <int D>
+bool ExactSolver<D>::wake_struck(State<D>& state) {
+  const auto sleeps = [&](int body) { return state.frozen[std::size_t(body)] != 0; };
+  const std::span<const int> bodies = active_.subset.bodies;
+  if (std::none_of(bodies.begin(), bodies.end(), sleeps)) return false;
+  std::vector<char>& struck = scratch_.struck;
+  struck.assign(model_.bodies.size(), 0);
+  const auto gives_way = [&](int body) {
+    return body >= 0 && !model_.bodies[std::size_t(body)].fixed && drives_.number(body) < 0;
+  };
+  const auto strike = [&](int body) {
+    if (!gives_way(body) || struck[std::size_t(body)]) return false;
+    struck[std::size_t(body)] = 1;
+    return true;
+  };
+  for (const Constraint& constraint : constraints_) {
+    if (!(closing_speed(constraint) > still_speed_)) continue;
+    for (int row = constraint.first; row < constraint.first + constraint.rows; ++row) {
+      strike(rows_[std::size_t(row)].a), strike(rows_[std::size_t(row)].b);
+      for (const RowSide<D>& side : rows_[std::size_t(row)].more) strike(side.body);
+    }
+  }
+  bool any = false;
+  for (bool more = true; more;) {
+    for (bool spreads = true; spreads;) {
+      spreads = false;
+      for (const ContactCandidate<D>& gap : candidates_) {
+        const int a = gap.key.a, b = gap.key.b;
+        if (!gives_way(a) || !gives_way(b) || struck[std::size_t(a)] == struck[std::size_t(b)]) continue;
+        spreads = strike(a) || strike(b);
+      }
+    }
+    std::vector<int> woken;
+    std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(woken),
+                 [&](int body) { return struck[std::size_t(body)] && sleeps(body); });
+    more = !woken.empty(), any = any || more;
+    if (!more) break;
+    std::vector<char> before(state.frozen.begin(), state.frozen.end());
+    sleep_.wake(state, woken);
+    for (const int body : bodies)
+      if (before[std::size_t(body)] && !sleeps(body)) strike(body);
+    collect_bodies(state);
+    find_contacts(state, limits_.touching_gap);
+  }
+  return any;
 }
 
 // wakes what bodies that are moved, and belts, may touch within the step
@@ -106,8 +156,10 @@ void ExactSolver<D>::find_accelerations(State<D>& state, double t) {
 template void ExactSolver<2>::wake_near_driven(State<2>&, double, double);
 template void ExactSolver<3>::wake_near_driven(State<3>&, double, double);
 template bool ExactSolver<2>::wake_reached(State<2>&);
+template bool ExactSolver<2>::wake_struck(State<2>&);
 template void ExactSolver<2>::put_to_sleep(State<2>&, double, double);
 template bool ExactSolver<3>::wake_reached(State<3>&);
+template bool ExactSolver<3>::wake_struck(State<3>&);
 template void ExactSolver<3>::put_to_sleep(State<3>&, double, double);
 
 }  // namespace obscura::sim

@@ -22,23 +22,28 @@ constexpr double kRounding = 1000;  // of what is still: what a solve leaves
 
 }  // namespace
 
-// how fast what touches comes closer, or joints come apart, at most
+// how fast what touches comes closer, or a joint comes apart
+template <int D>
+double ExactSolver<D>::closing_speed(const Constraint& constraint) const {
+  double most = 0;
+  switch (constraint.kind) {
+    case Constraint::Kind::motor:
+    case Constraint::Kind::friction:
+      return 0;
+    case Constraint::Kind::joint:
+      for (int i = 0; i < constraint.rows; ++i)
+        most = std::max(most, std::abs(row_velocity(constraint.first + i)));
+      return most;
+    default:
+      return std::max(0.0, -row_velocity(constraint.first));
+  }
+}
+
+// the fastest of them
 template <int D>
 double ExactSolver<D>::closing_speed() const {
   double most = 0;
-  for (const Constraint& constraint : constraints_) {
-    switch (constraint.kind) {
-      case Constraint::Kind::motor:
-      case Constraint::Kind::friction:
-        break;
-      case Constraint::Kind::joint:
-        for (int i = 0; i < constraint.rows; ++i)
-          most = std::max(most, std::abs(row_velocity(constraint.first + i)));
-        break;
-      default:
-        most = std::max(most, -row_velocity(constraint.first));
-    }
-  }
+  for (const Constraint& constraint : constraints_) most = std::max(most, closing_speed(constraint));
   return most;
 }
 
@@ -64,6 +69,10 @@ void ExactSolver<D>::resolve_contact_impacts(State<D>& state) {
     // a second time only for what the first has set off, not for its rounding
     const double fast = closing_speed();
     if (fast <= (round == 0 ? still_speed_ : kRounding * still_speed_)) return;
+    if (round == 0 && wake_struck(state)) {
+      update_poses(state);
+      collect_constraints(state);
+    }
     const bool in_turn = model_.impacts == Impacts::sequential && round + 1 < kRounds;
     if (!in_turn && round > 0 && fast > 0.5 * before) return;
     before = fast;
@@ -154,9 +163,11 @@ void ExactSolver<D>::record_impulse(const ContactKey& key, const Constraint& con
   outcome_.impulses.push_back(contact);
 }
 
+template double ExactSolver<2>::closing_speed(const Constraint&) const;
 template double ExactSolver<2>::closing_speed() const;
 template bool ExactSolver<2>::coming_apart() const;
 template void ExactSolver<2>::resolve_contact_impacts(State<2>&);
+template double ExactSolver<3>::closing_speed(const Constraint&) const;
 template double ExactSolver<3>::closing_speed() const;
 template bool ExactSolver<3>::coming_apart() const;
 template void ExactSolver<3>::resolve_contact_impacts(State<3>&);
