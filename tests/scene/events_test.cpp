@@ -365,6 +365,35 @@ TEST(Events, ARollingBallLeavesADomeHoweverGreatTheFriction) {
   }
 }
 
+// A ball that rolls over the edge of a box at v turns about the edge and leaves it where nothing presses, at
+//   cos = (v^2 / g r + 2 / (1 + k)) / (1 + 2 / (1 + k)),   I = k m r^2
+// of its height above it, and not where its centre passes the edge: there a face hands it on to an edge.
+TEST(Events, ABallThatRollsOverAnEdgeLeavesItWhereNothingPresses) {
+  for (const bool space : {false, true}) {
+    const double k = space ? 0.4 : 0.5, way = 2 / (1 + k);
+    const double leaves = (0.09 / (9.81 * 0.1) + way) / (1 + way);
+    for (const auto& [mode, rate] : {std::pair("event", 60), std::pair("event", 600),
+                                     std::pair("contact", 60), std::pair("contact", 2400)}) {
+      const std::string text =
+          fmt::format(
+              "[room]\nsize = {}\ncorner = {}\nwalls = \"none\"\n[physics]\ncollision = \"{}\"\nrate = {}\n"
+              "[[box]]\nname = \"t\"\nsize = {}\nposition = {}\nfixed = true\nfriction = 1e4\n"
+              "[[ball]]\nname = \"b\"\nradius = 0.1\nposition = {}\nvelocity = {}\nspin = {}\nfriction = "
+              "1e4\nelasticity = 0\n",
+              space ? "[8, 8, 8]" : "[8, 8]", space ? "[-4, -4, -4]" : "[-4, -4]", mode, rate,
+              space ? "[2, 1, 2]" : "[2, 1]", spot(space, -1, 0.5), spot(space, -0.3, 1.1),
+              spot(space, 0.3, 0), space ? "[0, 0, -171.88733853924697]" : "-171.88733853924697") +
+          when("leaves = [\"b\", \"t\"]", "{ mark = \"off\" }");
+      const auto times = times_until(text, 1.5);
+      ASSERT_EQ(times.size(), 1u) << space << mode << rate;
+      const auto run = run_of(text);
+      const double bound = mode == std::string("event") ? 1e-5 : 0.6 / rate;
+      EXPECT_NEAR(snapshot_at(*run, times[0]).bodies[0].position.y(), 1 + 0.1 * leaves, bound)
+          << space << mode << rate;
+    }
+  }
+}
+
 // What slides off a smooth dome by steps leaves it in the step in which it would, not where its straight
 // steps part from the curve a little.
 TEST(Events, ByStepsADomeIsLeftOnceAndInItsStep) {

@@ -499,7 +499,7 @@ void solid_gaps(const Couple& couple, double margin, Gaps sought, std::vector<Co
                                std::max({by_a.value, by_b.value, by_edges.value})};
   if (touching.by.face < 0) return;  // what stands nowhere, of a state that is no more
   if (touching.other.edges() == 0) {
-    const double slack = kAligned * touching.base.bounding_radius();
+    const double slack = kOblique * touching.base.bounding_radius();
     if (touching.best <= 0 ||
         over(touching.base, touching.by.face, touching.other.corner(touching.by.corner), slack)) {
       return keep(touching.other_at_base(couple, touching.by.corner, touching.by.value), margin, out);

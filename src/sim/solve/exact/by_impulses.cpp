@@ -19,11 +19,47 @@ constexpr double kCreep = 1e-6;  // of sqrt(g L)
 template <int D>
 bool ExactSolver<D>::floats() const {
   const auto moves = [&](int body) { return body >= 0 && response_.moves(body); };
-  return active_.subset.chains.empty() && std::all_of(rows_.begin(), rows_.end(), [&](const Row<D>& row) {
-           return moves(row.a) && moves(row.b) &&
-                  std::all_of(row.more.begin(), row.more.end(),
-                              [&](const RowSide<D>& side) { return moves(side.body); });
+  const auto is_free = [&](const Row<D>& row) {
+    return moves(row.a) && moves(row.b) &&
+           std::all_of(row.more.begin(), row.more.end(),
+                       [&](const RowSide<D>& side) { return moves(side.body); });
+  };
+  return active_.subset.chains.empty() &&
+         std::all_of(constraints_.begin(), constraints_.end(), [&](const Constraint& one) {
+           return (one.kind == Constraint::Kind::contact && one.off > limits_.touching_gap) ||
+                  std::all_of(rows_.begin() + one.first, rows_.begin() + one.first + one.rows, is_free);
          });
+}
+
+// What bears at the end of a piece has come to lie there: the velocities that the piece began with,
+// interval_.begun, become those that bring it there with the new ones, in the mean. What bounced and has come
+// back would else be lifted by half of that, to fall and bounce anew in each step, and what has landed would
+// lie too deep.
+template <int D>
+void ExactSolver<D>::land(State<D>& state, double h) {
+  using Kind = typename Constraint::Kind;
+  const auto bears = [&](const Constraint& one) { return one.kind == Kind::contact && f_[one.first] > 0; };
+  const auto lands = [&](const Constraint& one) {
+    return bears(one) && (one.began > still_speed_ || one.off > limits_.touching_gap);
+  };
+  if (std::none_of(constraints_.begin(), constraints_.end(), lands)) return;
+  const Eigen::VectorXd impulses = f_;
+  scratch_.chosen.clear();
+  b_.setZero(Eigen::Index(rows_.size()));
+  for (const Constraint& one : constraints_) {
+    const int held = bears(one) ? 1 : one.kind == Kind::joint ? one.rows : 0;
+    for (int row = one.first; row < one.first + held; ++row) scratch_.chosen.push_back(row);
+    if (lands(one)) b_[one.first] = -2 * std::max(one.off, 0.0) / h - row_velocity(one.first) - one.began;
+  }
+  save(state, scratch_.put);
+  restore(interval_.begun, state);
+  update_poses(state);
+  solve_least_norm();
+  apply_impulses(state, false);
+  save(state, interval_.begun);
+  restore(scratch_.put, state);
+  update_poses(state);
+  f_ = impulses;
 }
 
 // the rest of a step at once: impulses instead of forces, so that nothing that touches comes closer at its
@@ -31,15 +67,24 @@ bool ExactSolver<D>::floats() const {
 template <int D>
 void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   pose_driven(t);
-  find_contacts(state, limits_.touching_gap);
+  // also what comes down within it, slowly: that is no impact
+  const double reach = std::max(limits_.touching_gap, 2 * h * kComing * limits_.rest_speed);
+  find_contacts(state, reach);
   update_poses(state);
-  collect_constraints(state);
+  collect_constraints(state, 1e300, reach);
   save(state, interval_.begun);
   build_blocks(true, h);
   find_islands();
   const auto rate = dynamics_.accelerations(state, t);
   predict_velocities(rate, h);
-  for (Constraint& constraint : constraints_) constraint.began = row_velocity(constraint.first);
+  // Where nothing holds them by the new velocities, symplectic: what forces at the old places give is no
+  // angular momentum. Else by the mean, by which heaps come to rest on what stands.
+  const double mean = floats() ? 0 : 0.5;
+  for (Constraint& constraint : constraints_) {
+    constraint.began = row_velocity(constraint.first);
+    if (constraint.kind == Constraint::Kind::contact && constraint.off > limits_.touching_gap)
+      b_[constraint.first] += std::max(0.0, (constraint.off / h + mean * constraint.began) / (1 - mean));
+  }
   // Start from the forces of the step before only if nearly all is at rest: with them the iterations would go
   // on holding bodies that have begun to fall.
   double fastest = 0;
@@ -68,9 +113,7 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
     if (constraint.kind == Constraint::Kind::motor)
       progress_.given += 0.5 * f_[constraint.first] * (constraint.began + row_velocity(constraint.first));
   }
-  // Where nothing holds them by the new velocities, symplectic: what forces at the old places give is no
-  // angular momentum. Else by the mean, by which heaps come to rest on what stands.
-  const double mean = floats() ? 0 : 0.5;
+  if (mean > 0) land(state, h);
   for (const int body : members) {
     state.x[body] += h * (state.v[body] + mean * (interval_.begun.v[body] - state.v[body]));
     if (const int k = turning(state, body); k >= 0)

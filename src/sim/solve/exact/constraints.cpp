@@ -133,9 +133,10 @@ double ExactSolver<D>::row_velocity(int row) const {
 }
 
 // collects the constraints of this state, without one-sided ones that separate faster than `fastest`, but for
-// those of returning_. Of what it leaves out, leaving_ has what separates slower than the resting speed.
+// those of returning_. Of what it leaves out, leaving_ has what separates slower than the resting speed. With
+// `reach` also contacts with wider gaps, of at most so many m, that close slowly.
 template <int D>
-void ExactSolver<D>::collect_constraints(const State<D>& state, double fastest) {
+void ExactSolver<D>::collect_constraints(const State<D>& state, double fastest, double reach) {
   using Kind = typename Constraint::Kind;
   constraints_.clear(), rows_.clear(), leaving_.clear();
   const auto returns = [&](const Constraint& constraint) {
@@ -148,7 +149,8 @@ void ExactSolver<D>::collect_constraints(const State<D>& state, double fastest) 
     constraint.kind = kind, constraint.of = of;
     build_jacobian(constraint, turn);
     const double speed = one_sided ? row_velocity(constraint.first) : 0;
-    const bool apart = one_sided && constraint.off > limits_.touching_gap;
+    const bool comes = kind == Kind::contact && speed > -kComing * limits_.rest_speed;
+    const bool apart = one_sided && constraint.off > std::max(comes ? reach : 0, limits_.touching_gap);
     if (!apart && (speed <= fastest || returns(constraint))) {
       constraints_.push_back(constraint);
       return;

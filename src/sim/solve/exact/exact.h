@@ -214,6 +214,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<AngularVec<D>> turns;   // of bodies, by all rows together, rad
   };
 
+  static constexpr double kComing = 10;  // resting speeds: what comes down faster strikes
+
   // exact.cpp
   void step_group(State<D>& state, double t, double h);
   void rates(double t, std::span<const double> d, std::span<const double> v, std::span<double> d_rate,
@@ -233,6 +235,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void restore(const Motion& motion, State<D>& state) const;
   void hold_again(State<D>& state);
   bool floats() const;
+  void land(State<D>& state, double h);
   void step_by_impulses(State<D>& state, double t, double h);
   double time_unseen(const State<D>& state) const;
   void write_contacts(State<D>& state);
@@ -286,7 +289,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void aim_at_end();
   JointTurn<D> turn_between(const State<D>& state, const Joint<D>& joint) const;
   JointTurn<D> turn_of(const State<D>& state, const Constraint& constraint) const;
-  void collect_constraints(const State<D>& state, double fastest = 1e300);
+  void collect_constraints(const State<D>& state, double fastest = 1e300, double reach = 0);
   void collect_returning(const State<D>& state, double t);
   void build_jacobian(Constraint& constraint, const JointTurn<D>& turn);
   void build_blocks(bool impulses, double last = 0);

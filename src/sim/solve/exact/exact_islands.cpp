@@ -9,7 +9,7 @@ namespace obscura::sim {
 namespace {
 
 constexpr int kFewestRoughSweeps = 40, kMostRoughSweeps = 4000;  // of a rough solve: as many as
-constexpr double kRoughSize = 4e5;                               // elements of K can be visited in
+constexpr double kRoughSize = 2e7;                               // elements of K can be visited in
 constexpr double kThoroughSize = 5e8;  // of the size of all systems that a thorough one solves
 
 }  // namespace

@@ -103,7 +103,11 @@ double ExactSolver<D>::feature_time(const State<D>& state, double h) {
       return any;
     };
     const double size = std::max(limits_.bounding_radius[couple.a], limits_.bounding_radius[couple.b]);
-    const Vec<D> place = evaluate(candidate, poses_[couple.a], poses_[couple.b]).point;
+    // of what is round the middle, for where it rolls its rim stands still
+    const EvaluatedContact<D> now = evaluate(candidate, poses_[couple.a], poses_[couple.b]);
+    const double inward =
+        candidate.kind == ContactCandidate<D>::Kind::corner_of_b ? -candidate.radius_b : candidate.radius_a;
+    const Vec<D> place = now.point + inward * now.normal;
     const double slides = slid(state, couple, place, h, 1, 0).norm();
     if (slides > std::max(kPast * size, kApart * limits_.touching_gap) && !there(1) && there(0)) {
       double low = 0, high = 1;
@@ -113,8 +117,9 @@ double ExactSolver<D>::feature_time(const State<D>& state, double h) {
       }
       there(high);
       if (alone) high = std::max(high, end_of_faces(state, couple, h, low));
-      // so far that it does not touch what is beside the face
-      const double past = high + std::max(kPast * size, kApart * limits_.touching_gap) / slides;
+      // so far that it does not touch what is beside the face; what is round rolls on about its edge
+      const bool round = candidate.radius_a + candidate.radius_b > 0;
+      const double past = high + std::max(kPast * size, round ? 0 : kApart * limits_.touching_gap) / slides;
       if (past < 1) first = std::min(first, past);
     }
     for (const int body : {couple.a, couple.b})
