@@ -11,7 +11,8 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kCreep = 1e-6;  // of sqrt(g L)
+constexpr double kCreep = 1e-6;   // of sqrt(g L)
+constexpr double kBarely = 0.05;  // of what gravity gives in the piece
 
 }  // namespace
 
@@ -102,7 +103,9 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
                                rate.begin() + dynamics_.chain_start() + chains.size());
   for (double& change : scratch_.chain_change) change *= h;
   chains.jump(state, scratch_.chain_change, false);
-  warm_start_rows(fastest < kCreep * limits_.unit_speed ? h : 0);
+  const double creeps =
+      std::max(kCreep * limits_.unit_speed, kBarely * h * std::sqrt(model_.gravity.squaredNorm()));
+  warm_start_rows(fastest < creeps ? h : 0);
   if (!solve()) solve_roughly();
   for (int i = 0; i < kMostRubs && rub(i); ++i)
     if (!solve()) solve_roughly();

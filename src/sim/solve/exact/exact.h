@@ -204,7 +204,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
     Eigen::VectorXd island_b, island_f;
     std::vector<ConeBlock<D>> island_blocks;
     std::vector<ConeMode<D>> island_modes;
-    Motion saved, put;
+    Motion saved, put, struck_from;
+    std::vector<Constraint> constraints;
     std::vector<Contact<D>> near;
     std::vector<ContactCandidate<D>> on_rails;
     std::vector<double> accelerations;  // one a body, m/s^2
@@ -339,6 +340,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void resolve_contact_impacts(State<D>& state);
   void keep_fastest_pair();
   void solve_impacts(State<D>& state, double bounce);
+  void attempt_impacts(State<D>& state, double bounce);
+  void rebuild_rows();
   void record_impulse(const ContactKey& key, const Constraint& constraint, const Vec<D>& impulse);
 
   // exact_sleep.cpp

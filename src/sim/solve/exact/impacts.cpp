@@ -81,6 +81,14 @@ void ExactSolver<D>::resolve_contact_impacts(State<D>& state) {
   }
 }
 
+// the rows of constraints_, which have become others, at the poses at hand
+template <int D>
+void ExactSolver<D>::rebuild_rows() {
+  rows_.clear();
+  for (Constraint& constraint : constraints_) build_jacobian(constraint, AngularVec<D>::Zero());
+  chain_response_.build(rows_, response_, dynamics_.chains());
+}
+
 // keeps only the contacts of the pair with the greatest approach speed
 template <int D>
 void ExactSolver<D>::keep_fastest_pair() {
@@ -97,15 +105,58 @@ void ExactSolver<D>::keep_fastest_pair() {
     const ContactKey& key = candidates_[constraint.of].key;
     return key.a != pair.a || key.b != pair.b;
   });
-  rows_.clear();
-  for (Constraint& constraint : constraints_) build_jacobian(constraint, AngularVec<D>::Zero());
-  chain_response_.build(rows_, response_, dynamics_.chains());
+  rebuild_rows();
 }
 
-// Newton's law with Coulomb's friction for all constraints; `bounce` scales e. If energy would rise, e is
-// scaled down further.
+// All impacts of this instant. Contacts that only lie beside take part where what else is struck makes them
+// close: those that it leaves as they are have no impulse, and that is the law for all of them together. So
+// what strikes one tile of a floor need not know of the others.
 template <int D>
 void ExactSolver<D>::solve_impacts(State<D>& state, double bounce) {
+  const auto beside = [&](const Constraint& one, double still) {
+    return one.kind == Constraint::Kind::contact && closing_speed(one) <= still;
+  };
+  std::vector<Constraint>& all = scratch_.constraints;
+  all = constraints_;
+  save(state, scratch_.struck_from);
+  std::erase_if(constraints_, [&](const Constraint& one) { return beside(one, still_speed_); });
+  std::vector<Constraint> taken;
+  for (bool grown = true; grown;) {
+    if (constraints_.size() < all.size()) rebuild_rows();
+    attempt_impacts(state, bounce);
+    grown = false;
+    if (constraints_.size() == all.size()) break;
+    // which of the others close by that
+    taken = constraints_;
+    const Eigen::VectorXd impulses = f_;
+    update_poses(state);
+    constraints_ = all;
+    rebuild_rows();
+    std::vector<Constraint> more;
+    for (const Constraint& one : constraints_) {
+      const bool known = std::any_of(taken.begin(), taken.end(), [&](const Constraint& it) {
+        return it.kind == one.kind && it.of == one.of;
+      });
+      if (known || !beside(one, kRounding * still_speed_)) more.push_back(one), grown = grown || !known;
+    }
+    constraints_ = grown ? more : taken;
+    if (grown) restore(scratch_.struck_from, state);
+    update_poses(state);
+    if (!grown) rebuild_rows(), f_ = impulses;
+  }
+  for (int i = 0; i < int(rows_.size()); ++i) progress_.given += f_[i] * given(i);
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.kind != Constraint::Kind::contact || f_[constraint.first] == 0) continue;
+    Vec<D> p = Vec<D>::Zero();
+    for (int i = 0; i < D; ++i) p += f_[constraint.first + i] * rows_[constraint.first + i].along;
+    record_impulse(candidates_[constraint.of].key, constraint, p);
+  }
+}
+
+// Newton's law with Coulomb's friction for constraints_; `bounce` scales e. If energy would rise, e is scaled
+// down further.
+template <int D>
+void ExactSolver<D>::attempt_impacts(State<D>& state, double bounce) {
   build_blocks(true);
   find_islands();
   b_.resize(Eigen::Index(rows_.size()));
@@ -136,13 +187,6 @@ void ExactSolver<D>::solve_impacts(State<D>& state, double bounce) {
     const double size = before + std::fabs(gives), rises = kinetic_energy(state) - gives - before;
     return !found ? std::numeric_limits<double>::infinity() : size > 0 ? rises / size - kGain : 0;
   });
-  for (int i = 0; i < int(rows_.size()); ++i) progress_.given += f_[i] * given(i);
-  for (const Constraint& constraint : constraints_) {
-    if (constraint.kind != Constraint::Kind::contact || f_[constraint.first] == 0) continue;
-    Vec<D> p = Vec<D>::Zero();
-    for (int i = 0; i < D; ++i) p += f_[constraint.first + i] * rows_[constraint.first + i].along;
-    record_impulse(candidates_[constraint.of].key, constraint, p);
-  }
 }
 
 // adds an impulse to those of this step

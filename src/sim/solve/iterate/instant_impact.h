@@ -17,7 +17,7 @@ template <int D>
 class InstantImpact {
  public:
   /// The most contacts of one impact, and the most ends.
-  static constexpr int kMost = D == 2 ? 8 : 16, kMostEnds = 16;
+  static constexpr int kMost = 16, kMostEnds = 16;
 
   // with room for the most, so that no size allocates
   static constexpr int kMostRows = D * kMost + kMostEnds;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <utility>
 #include <vector>
@@ -98,6 +99,11 @@ class Impacts {
     Motion a, b;
     bool moved = false;  // by the impact, directly or by ends of joints
   };
+  // what a row does to one of its bodies
+  struct StruckSide {
+    int body;
+    double x, y, turn, im, ii;  // of the row; what it moves
+  };
   // what does not change while the impacts of a step are resolved
   struct Step {
     const std::vector<Pair>& pairs;
@@ -135,6 +141,14 @@ class Impacts {
   bool meets_at(const Pair& pair, double when, const ContactBatch& batches, const Step& step,
                 Meeting& meeting);
   bool gather_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step);
+  bool grow_instant(const Impact& first, const std::vector<ContactBatch>& batches,
+                    const Step& step);
+  bool near_at(const Pair& pair, int body, double when, const Step& step) const;
+  bool knows(int pair) const;
+  const Pair& pair_of(int touch, const Step& step) const;
+  const Push& push_of(int row) const;
+  std::array<StruckSide, 2> sides(int row, const std::vector<ContactBatch>& batches, const Step& step) const;
+  void couple_instant(const std::vector<ContactBatch>& batches, const Step& step, bool tied);
   void take_alone(const Impact& first);
   void gather_ends(double when, const Step& step);
   bool resolve_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step);
@@ -205,6 +219,7 @@ class Impacts {
   std::vector<std::pair<int, int>> closed_;  // their touches: of which meeting, which of its two
   StruckEnds<2> ends_;
   InstantImpact<2> instant_;
+  std::vector<std::pair<int, Motion>> changes_;                   // by it, of bodies
   std::vector<JointSolver<2>::JointResponse> instant_responses_;  // of its rows
 };
 

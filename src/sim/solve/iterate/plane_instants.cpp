@@ -14,12 +14,9 @@ namespace obscura::sim::plane {
 namespace {
 
 constexpr int kMostInstants = 2000;  // of a substep: what is squeezed has no end of them
-
-// what a row does to one of its bodies
-struct StruckSide {
-  int body;
-  double x, y, turn, im, ii;  // of the row; what it moves
-};
+constexpr int kFew = 8;              // touches: whatever they are, they are solved together
+constexpr double kBounces = 0.1;     // e: what rises by a hundredth of its fall at most goes pair after pair
+constexpr double kStill = 1e-9;      // of how fast an instant's touches close: what is left as it is
 
 }  // namespace
 
@@ -28,6 +25,21 @@ std::pair<double, double> Impacts::place_at(int body, double when, const Step& s
   if (when_[body] == when) return {pose_[body].x, pose_[body].y};
   const Motion way = way_at(body, when, step);
   return {step.poses[body].x + way.x, step.poses[body].y + way.y};
+}
+
+// whether a body and the other of a pair of its are near enough to touch at a time
+bool Impacts::near_at(const Pair& pair, int body, double when, const Step& step) const {
+  if (pair.b < 0) return true;
+  const int beside = pair.a == body ? pair.b : pair.a;
+  const auto [x, y] = place_at(body, when, step);
+  const auto [px, py] = place_at(beside, when, step);
+  const double both = (1 + kTogether) * (bounding_radius_[body] + bounding_radius_[beside]);
+  return (x - px) * (x - px) + (y - py) * (y - py) <= both * both;
+}
+
+bool Impacts::knows(int pair) const {
+  return std::any_of(meetings_.begin(), meetings_.end(),
+                     [&](const Meeting& known) { return known.impact.pair == pair; });
 }
 
 // Whether a pair touches at a time, by the features that are nearest then: how, into `meeting`.
@@ -63,7 +75,7 @@ bool Impacts::gather_instant(const Impact& first, const std::vector<ContactBatch
   const auto list = [&](int number) {
     for (int k = 0; k < 2; ++k)
       if (meetings_[number].impact.met[k]) closed_.emplace_back(number, k);
-    few = int(closed_.size()) <= InstantImpact<2>::kMost;
+    few = int(closed_.size()) <= kFew;
   };
   list(0);
   for (int m = 0; few && m < int(meetings_.size()); ++m) {
@@ -71,21 +83,10 @@ bool Impacts::gather_instant(const Impact& first, const std::vector<ContactBatch
     for (const int side : {pair.a, pair.b}) {
       if (side < 0 || now_[side].im == 0) continue;
       step.joints.each_tied(side, [&](int body) {
-        const auto [x, y] = place_at(body, first.when, step);
-        const auto near = [&](const Pair& pair_of_it) {
-          if (pair_of_it.b < 0) return true;
-          const int beside = pair_of_it.a == body ? pair_of_it.b : pair_of_it.a;
-          const auto [px, py] = place_at(beside, first.when, step);
-          const double both = (1 + kTogether) * (bounding_radius_[body] + bounding_radius_[beside]);
-          return (x - px) * (x - px) + (y - py) * (y - py) <= both * both;
-        };
         for (const int next : around(body)) {
           if (!few) return;
           const Pair& other = step.pairs[next];
-          if (!near(other)) continue;
-          if (std::any_of(meetings_.begin(), meetings_.end(),
-                          [&](const Meeting& known) { return known.impact.pair == next; }))
-            continue;
+          if (!near_at(other, body, first.when, step) || knows(next)) continue;
           Meeting meeting;
           if (!meets_at(other, first.when, batches[other.slot / kLanes], step, meeting)) continue;
           meeting.impact.pair = next;
@@ -128,6 +129,135 @@ void Impacts::gather_ends(double when, const Step& step) {
   ends_.limit();
 }
 
+// the pair of a touch of an instant, and how its rows push
+const Pair& Impacts::pair_of(int touch, const Step& step) const {
+  return step.pairs[meetings_[closed_[touch].first].impact.pair];
+}
+const Impacts::Push& Impacts::push_of(int row) const {
+  const auto& [number, k] = closed_[row / 2];
+  return meetings_[number].impact.pushes[row % 2][k];
+}
+
+// what a row of an instant does to both of its bodies
+std::array<Impacts::StruckSide, 2> Impacts::sides(int row, const std::vector<ContactBatch>& batches,
+                                                  const Step& step) const {
+  const Pair& pair = pair_of(row / 2, step);
+  const ContactBatch& g = batches[pair.slot / kLanes];
+  const int lane = pair.slot % kLanes, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
+  const Push& push = push_of(row);
+  return {{{pair.a, push.x, push.y, push.a, now_[pair.a].im, g.iia[lane]},
+           {b, -push.x, -push.y, -push.b, now_[b].im, g.iib[lane]}}};
+}
+
+// The system of the touches of an instant, into instant_; there is room for ends_. `tied`: joints hold some
+// of its bodies.
+void Impacts::couple_instant(const std::vector<ContactBatch>& batches, const Step& step, bool tied) {
+  JointSolver<2>& joints = step.struck_joints;
+  const int count = int(closed_.size()), rows = 2 * count, room = int(now_.size()) - 1;
+  instant_.resize(count, ends_.count());
+  auto& K = instant_.K;
+  if (tied && instant_responses_.empty()) {
+    instant_responses_.resize(InstantImpact<2>::kMostRows);
+    for (JointSolver<2>::JointResponse& response : instant_responses_) joints.reserve(response);
+  }
+  for (int i = 0; i < rows; ++i) {
+    const int k = i / 2;
+    const Pair& pair = pair_of(k, step);
+    const ContactBatch& g = batches[pair.slot / kLanes];
+    const int lane = pair.slot % kLanes;
+    const Meeting& meeting = meetings_[closed_[k].first];
+    const Push& push = push_of(i);
+    instant_.speeds[i] = speed(push, meeting.a, meeting.b) + (i % 2 != 0 && g.belts ? g.belt[lane] : 0);
+    instant_.blocks[k].mu = pair.material.friction;
+    const auto gained = [&] { return speed(push, step.dv[pair.a], step.dv[pair.b >= 0 ? pair.b : room]); };
+    if (i % 2 == 0 && instant_.speeds[i] < strike_speed(pair, g.impact_speed[lane], gained(), step))
+      instant_.strikes[k] = 1, instant_.elasticity[k] = pair.material.elasticity;
+    const auto own = sides(i, batches, step);
+    if (tied) {
+      Row<2>& row = instant_responses_[i].row;
+      row.a = pair.a, row.b = pair.b;
+      row.along = {push.x, push.y}, row.angular_a[0] = push.a, row.angular_b[0] = push.b;
+      joints.compute_response(instant_responses_[i]);
+    }
+    for (int j = 0; j <= i; ++j) {
+      double sum = 0;
+      if (tied) {
+        sum = joints.response_between(instant_responses_[i], instant_responses_[j]);
+      } else {
+        const auto others = sides(j, batches, step);
+        for (const StruckSide& p : own)
+          for (const StruckSide& q : others)
+            if (p.body == q.body) sum += p.im * (p.x * q.x + p.y * q.y) + p.ii * (p.turn * q.turn);
+      }
+      K(i, j) = K(j, i) = sum;
+    }
+  }
+}
+
+// What a blow makes close of all that hangs together with it, into meetings_ and closed_: what it leaves as
+// it is has no part in it. False where that is more than few, hangs on joints, or no impulses are found.
+bool Impacts::grow_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step) {
+  take_alone(first);
+  ends_.clear();
+  const Pair& its = step.pairs[first.pair];
+  if (!(its.material.elasticity > kBounces)) return false;
+  const int room = int(now_.size()) - 1;
+  Pose ignored;
+  move(its.a, first.when, step, ignored, meetings_[0].a);
+  move(its.b >= 0 ? its.b : room, first.when, step, ignored, meetings_[0].b);
+  const auto tied = [&](int body) { return body >= 0 && !step.joints.empty() && step.joints.has(body); };
+  if (tied(its.a) || tied(its.b)) return false;
+  for (std::size_t known = 0; known < meetings_.size();) {
+    known = meetings_.size();
+    couple_instant(batches, step, false);
+    if (++instants_ > kMostInstants || !instant_.solve()) return false;
+    changes_.clear();
+    double fastest = 0;
+    for (int i = 0; i < 2 * int(closed_.size()); ++i) {
+      fastest = std::max(fastest, std::fabs(instant_.speeds[i]));
+      const double l = instant_.p[i];
+      for (const StruckSide& p : sides(i, batches, step)) {
+        auto at = std::find_if(changes_.begin(), changes_.end(),
+                               [&](const auto& it) { return it.first == p.body; });
+        if (at == changes_.end()) at = changes_.insert(at, {p.body, Motion{}});
+        at->second.x += p.x * (p.im * l), at->second.y += p.y * (p.im * l),
+            at->second.w += p.ii * (p.turn * l);
+      }
+    }
+    const auto change = [&](int body) {
+      for (const auto& [of, by] : changes_)
+        if (of == body) return by;
+      return Motion{};
+    };
+    for (std::size_t m = 0; m < known; ++m) {
+      const Pair pair = step.pairs[meetings_[m].impact.pair];
+      for (const int side : {pair.a, pair.b}) {
+        if (side < 0 || now_[side].im == 0) continue;
+        for (const int next : around(side)) {
+          const Pair& other = step.pairs[next];
+          if (!near_at(other, side, first.when, step) || knows(next)) continue;
+          Meeting meeting;
+          if (!meets_at(other, first.when, batches[other.slot / kLanes], step, meeting)) continue;
+          meeting.impact.pair = next;
+          const Motion a = change(other.a), b = change(other.b >= 0 ? other.b : room);
+          const auto closes = [&](int k) {
+            const Push& push = meeting.impact.pushes[0][k];
+            return meeting.impact.met[k] &&
+                   speed(push, meeting.a, meeting.b) + speed(push, a, b) < -kStill * fastest;
+          };
+          if (!closes(0) && !closes(1)) continue;
+          if (tied(other.a) || tied(other.b)) return false;
+          meetings_.push_back(meeting);
+          for (int k = 0; k < 2; ++k)
+            if (meeting.impact.met[k]) closed_.emplace_back(int(meetings_.size()) - 1, k);
+          if (int(closed_.size()) > InstantImpact<2>::kMost) return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
 // all that meets together; false where it goes pair after pair
 bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatch>& batches,
                               const Step& step) {
@@ -137,7 +267,7 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
   const auto moves = [&](int body) { return body >= 0 && now_[body].im > 0; };
   bool alone = !together_;
   for (const int body : {its.a, its.b}) alone = alone || (moves(body) && crowded_[body] != 0);
-  if (!alone && !gather_instant(first, batches, step)) {
+  if (!alone && !gather_instant(first, batches, step) && !grow_instant(first, batches, step)) {
     // so many touch there that what meets them later goes pair after pair, too
     alone = true;
     for (const int body : {its.a, its.b})
@@ -164,61 +294,7 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
   move(its.a, first.when, step, ignored, meetings_[0].a);
   move(its.b >= 0 ? its.b : int(now_.size()) - 1, first.when, step, ignored, meetings_[0].b);
   const int count = int(closed_.size()), rows = 2 * count, room = int(now_.size()) - 1;
-  const auto pair_of = [&](int k) -> const Pair& {
-    return step.pairs[meetings_[closed_[k].first].impact.pair];
-  };
-  const auto push_of = [&](int row) -> const Push& {
-    const auto& [number, k] = closed_[row / 2];
-    return meetings_[number].impact.pushes[row % 2][k];
-  };
-  const auto sides = [&](int row, StruckSide(&of)[2]) {
-    const Pair& pair = pair_of(row / 2);
-    const ContactBatch& g = batches[pair.slot / kLanes];
-    const int lane = pair.slot % kLanes, b = pair.b >= 0 ? pair.b : room;
-    const Push& push = push_of(row);
-    of[0] = {pair.a, push.x, push.y, push.a, now_[pair.a].im, g.iia[lane]};
-    of[1] = {b, -push.x, -push.y, -push.b, now_[b].im, g.iib[lane]};
-  };
-
-  instant_.resize(count, ends_.count());
-  auto& K = instant_.K;
-  if (tied && instant_responses_.empty()) {
-    instant_responses_.resize(InstantImpact<2>::kMostRows);
-    for (JointSolver<2>::JointResponse& response : instant_responses_) joints.reserve(response);
-  }
-  for (int i = 0; i < rows; ++i) {
-    const int k = i / 2;
-    const Pair& pair = pair_of(k);
-    const ContactBatch& g = batches[pair.slot / kLanes];
-    const int lane = pair.slot % kLanes;
-    const Meeting& meeting = meetings_[closed_[k].first];
-    const Push& push = push_of(i);
-    instant_.speeds[i] = speed(push, meeting.a, meeting.b) + (i % 2 != 0 && g.belts ? g.belt[lane] : 0);
-    instant_.blocks[k].mu = pair.material.friction;
-    const auto gained = [&] { return speed(push, step.dv[pair.a], step.dv[pair.b >= 0 ? pair.b : room]); };
-    if (i % 2 == 0 && instant_.speeds[i] < strike_speed(pair, g.impact_speed[lane], gained(), step))
-      instant_.strikes[k] = 1, instant_.elasticity[k] = pair.material.elasticity;
-    StruckSide own[2], others[2];
-    sides(i, own);
-    if (tied) {
-      Row<2>& row = instant_responses_[i].row;
-      row.a = pair.a, row.b = pair.b;
-      row.along = {push.x, push.y}, row.angular_a[0] = push.a, row.angular_b[0] = push.b;
-      joints.compute_response(instant_responses_[i]);
-    }
-    for (int j = 0; j <= i; ++j) {
-      double sum = 0;
-      if (tied) {
-        sum = joints.response_between(instant_responses_[i], instant_responses_[j]);
-      } else {
-        sides(j, others);
-        for (const StruckSide& p : own)
-          for (const StruckSide& q : others)
-            if (p.body == q.body) sum += p.im * (p.x * q.x + p.y * q.y) + p.ii * (p.turn * q.turn);
-      }
-      K(i, j) = K(j, i) = sum;
-    }
-  }
+  couple_instant(batches, step, tied);
   if (tied) ends_.couple(joints, std::span(instant_responses_).first(std::size_t(rows)), instant_);
   ++instants_;
   if (!instant_.solve()) return false;
@@ -239,11 +315,10 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
   for (int i = 0; i < rows; ++i) {
     const double l = instant_.p[i];
     if (l == 0) continue;
-    const Pair& pair = pair_of(i / 2);
+    const Pair& pair = pair_of(i / 2, step);
     const ContactBatch& g = batches[pair.slot / kLanes];
     const Meeting& meeting = meetings_[closed_[i / 2].first];
-    StruckSide own[2];
-    sides(i, own);
+    const auto own = sides(i, batches, step);
     // the work of a kinematic body: impulse times its speed
     const Motion none{}, &ua = own[0].im > 0 ? none : meeting.a, &ub = own[1].im > 0 ? none : meeting.b;
     drive_work_ -= l * (speed(push_of(i), ua, ub) + (i % 2 != 0 ? g.belt[pair.slot % kLanes] : 0));
