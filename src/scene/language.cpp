@@ -135,8 +135,8 @@ std::vector<Key> world_rows() {
       {.path = "physics.impacts", .form = choice, .fallback = "\"simultaneous\"",
        .choices = {"simultaneous", "sequential"},
        .doc = "Impacts at the same instant: solved together, or pair after pair, as Newton's cradle needs. The iterative "
-              "solver takes together what hangs together by up to eight contacts; of more, as in heaps, that of the plane goes "
-              "pair after pair.",
+              "solver takes together what hangs together by up to eight contacts, in space sixteen; of more, in the plane, what a "
+              "bouncing blow makes close, up to sixteen, and else pair after pair.",
        .example = "\"sequential\""},
       {.path = "physics.rotation", .form = boolean, .fallback = "true",
        .doc = "Whether bodies turn. `false`: forces move bodies but never turn them.", .example = "false"},

@@ -81,7 +81,8 @@ std::string contact(const sim::Model<D>& model) {
                      its.exact ? ""
                      : model.impacts == sim::Impacts::sequential
                          ? "; impacts are solved pair after pair"
-                         : "; of one instant, impacts of up to 8 contacts are solved together");
+                         : fmt::format("; of one instant, impacts of up to {} contacts are solved together",
+                                       D == 2 ? 8 : 16));
 }
 
 // how many there are of each kind; bodies by what they are made of

@@ -10,6 +10,7 @@
 #include "draw/picture/arms.h"
 #include "draw/picture/joint_look.h"
 #include "draw/picture/rope_way.h"
+#include "draw/picture/slider_rail.h"
 #include "draw/plane/stage.h"
 
 namespace obscura::draw {
@@ -187,10 +188,10 @@ void draw_rails(const Stage& stage, const View& view, const sim::Snapshot& now, 
     const Point across(-along.y(), along.x()), home = view.page(now.joints[i].b);
     const Color color = stage.colours.hatch;
     const auto [least, most] = reach_of_rail(stage, view, now.joints[i].b, Vec3(along.x(), -along.y(), 0));
-    const bool starts = std::abs(joint.lower) * view.scale < kFar,
-               ends = std::abs(joint.upper) * view.scale < kFar;
-    const Point from = home + view.scale * (starts ? joint.lower : least) * along,
-                to = home + view.scale * (ends ? joint.upper : most) * along;
+    const SliderRail rail = slider_rail(stage.cast, now, i);
+    const bool starts = std::abs(rail.from) * view.scale < kFar, ends = std::abs(rail.to) * view.scale < kFar;
+    const Point from = home + view.scale * (starts ? rail.from : least) * along,
+                to = home + view.scale * (ends ? rail.to : most) * along;
     const double width = kSpringLine * weight;
     list.of({Subject::What::joint, int(i)});
     list.add({{from, width, color}, {to, width, color}}, Cap::butt);

@@ -11,6 +11,7 @@
 #include "draw/picture/arms.h"
 #include "draw/picture/joint_look.h"
 #include "draw/picture/rope_way.h"
+#include "draw/picture/slider_rail.h"
 #include "draw/space/space.h"
 
 namespace obscura::draw {
@@ -146,10 +147,11 @@ void add_links(SpaceFrame& s) {
                                                  : s.now.bodies[joint.b].orientation.toRotationMatrix();
         const Vec3 along = turn * joint.axis;
         const double far = 2 * s.lens.window.width / s.lens.scale;
-        add_tube(s,
-                 {at.b + std::clamp(joint.lower, -far, far) * along,
-                  at.b + std::clamp(joint.upper, -far, far) * along},
-                 0.5 * kSpringLine * weight * metre, s.stage.colours.hatch, number);
+        const SliderRail rail = slider_rail(cast, s.now, i);
+        add_tube(
+            s,
+            {at.b + std::clamp(rail.from, -far, far) * along, at.b + std::clamp(rail.to, -far, far) * along},
+            0.5 * kSpringLine * weight * metre, s.stage.colours.hatch, number);
         break;
       }
       case JointMark::dot:
