@@ -79,6 +79,12 @@ class Iterative : public ContactSolver<D> {
   virtual void iterate_contacts(int i) = 0;
   /// More of those that have not settled.
   virtual void settle_contacts() = 0;
+  /// Of the iterations of a quiet heap in a substep of the fewest a second, so many one of the present ones
+  /// has: the last forces are nearer the nearer the last substep is. What hardly moves, by `rate` widths a
+  /// second, has all: its forces are to be found once.
+  double share_of_iterations(double rate) const {
+    return rate < kAllButStill ? 1 : std::min(1.0, fewest_substeps_ / (substeps_ * value(model_.rate)));
+  }
   /// Exactly what few of them do not settle.
   virtual void solve_exhausted() = 0;
   virtual void finish_iterations(StepPart<D> part) = 0;
@@ -201,9 +207,9 @@ class Iterative : public ContactSolver<D> {
   double restitution_threshold_ = 0;  // m/s: slower approaches do not bounce
   AllowedOverlap allowed_overlap_;
   double fewest_substeps_ = kFewestSubsteps;  // 1/s
-  std::int64_t every_ = 1;               // steps between two pair searches
-  int substeps_ = 1;                     // of this step
-  double part_of_step_ = 1;              // how much of a whole one it is,
+  std::int64_t every_ = 1;                    // steps between two pair searches
+  int substeps_ = 1;                          // of this step
+  double part_of_step_ = 1;                   // how much of a whole one it is,
   double least_substep_ = 0;             // s: and if not all, how long its substeps would be in a whole one
   ClosingRates closing_rates_;           // at the start of the step; 0: not known yet
   std::vector<double> bounding_radius_;  // of bodies, m

@@ -50,7 +50,9 @@ void PlaneIterative::settle_all() {
   }
   double change = 0;
   int left = std::max(kSettlingPairs, kSettlingIterations * awake_pairs_);
-  if (quiet) left = std::max(left, std::min(kQuietPairs, kQuietIterations * awake_pairs_));
+  if (quiet)
+    left = std::max(left, int(share_of_iterations(closing_rates_.most) *
+                              std::min(kQuietPairs, kQuietIterations * awake_pairs_)));
   for (int pairs = 1; left > 0; left -= pairs) {
     pairs = iterate_active();
     if (pairs == 0) return;

@@ -49,7 +49,8 @@ void SpaceIterative::settle_contacts() {
     island.budget = std::max(int(rounds * island.contacts), kIslandTouches);
     const bool quiet = island.quiet >= kMostlyQuiet * island.contacts;
     if (quiet)
-      island.budget = std::max(island.budget, std::min(kQuietTouches, kQuietRounds * island.contacts));
+      island.budget = std::max(island.budget, int(share_of_iterations(island.rate) *
+                                                  std::min(kQuietTouches, kQuietRounds * island.contacts)));
     island.follows =
         (quiet || island.contacts <= kFewTouches) && island.budget >= kFewestFollowed * island.contacts;
     follows = follows || island.follows;

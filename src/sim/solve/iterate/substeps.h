@@ -87,6 +87,8 @@ inline double settled_rate(double rate) {
 /// found this costs nothing, and where they are not, heavy lids would sink into what bears them, and towers
 /// into themselves.
 inline constexpr double kQuiet = 1, kMostlyQuiet = 0.8;
+/// The same of what hardly moves.
+inline constexpr double kAllButStill = 0.1;
 
 /// Islands of so many contacts at most are solved exactly where iterations do not settle them, by so many
 /// linear systems at most.
