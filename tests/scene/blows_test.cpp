@@ -108,8 +108,7 @@ TEST(Blows, WhereBoxesInARowBearNothingEndNoInterval) {
 }
 
 // A ball bounces on one tile of a floor of tiles that touch as on one alone: what only lies beside has no
-// part in the blow. It strikes at v = sqrt(2 g h) and leaves at e v. A row of balls that fall on a plank at
-// once rebound alike.
+// part in the blow. It strikes at v = sqrt(2 g h) and leaves at e v.
 TEST(Blows, OnATileDoNotHangOnTheTilesBesideIt) {
   for (const int dimension : {2, 3}) {
     for (const char* rules : {"solver = 'direct'", "solver = 'iterative'", "collision = 'event'"}) {
@@ -132,6 +131,28 @@ TEST(Blows, OnATileDoNotHangOnTheTilesBesideIt) {
                     bound)
             << dimension << " " << rules << " " << tiles;
       }
+    }
+  }
+}
+
+// Nine balls that fall on a plank on the ground at once leave it alike, at e sqrt(2 g h).
+TEST(Blows, OfARowOfBallsOnAPlankAreAllAlike) {
+  for (const char* rules : {"solver = 'direct'", "solver = 'iterative'", "collision = 'event'"}) {
+    for (const int rate : {60, 240, 600}) {
+      std::string text = fmt::format(
+          "[room]\nsize = [12, 4]\ncorner = [-6, 0]\n[physics]\n{}\nrate = {}\n[[box]]\nname = 'plank'\nsize "
+          "= "
+          "[5, 0.2]\nmass = 5\nelasticity = 0.5\nposition = [0, 0.1]\n",
+          rules, rate);
+      for (int i = -4; i <= 4; ++i)
+        text += disc(fmt::format("c{}", i + 4), 1, 0.1,
+                     fmt::format("elasticity = 0.5\nposition = [{}, 0.8]\n", 0.5 * i));
+      const TextRun run(text);
+      const double v = std::sqrt(2 * 9.81 * 0.5), when = v / 9.81;
+      const sim::Snapshot now = run.at(when + 0.05);
+      for (const char* name : {"c0", "c2", "c4", "c8"})
+        EXPECT_NEAR(now.bodies[number_of(run, name)].velocity.y(), 0.5 * v - 9.81 * 0.05, 1e-4)
+            << rules << " " << rate << " " << name;
     }
   }
 }

@@ -29,6 +29,7 @@
 #include "scene/body_kinds.h"
 #include "scene/error.h"
 #include "sim/solve/contact_solver.h"
+#include "sim/solve/iterate/instant_impact.h"
 #include "sim/step/run.h"
 
 namespace obscura::app {
@@ -82,7 +83,7 @@ std::string contact(const sim::Model<D>& model) {
                      : model.impacts == sim::Impacts::sequential
                          ? "; impacts are solved pair after pair"
                          : fmt::format("; of one instant, impacts of up to {} contacts are solved together",
-                                       D == 2 ? 8 : 16));
+                                       sim::InstantImpact<D>::kFew));
 }
 
 // how many there are of each kind; bodies by what they are made of

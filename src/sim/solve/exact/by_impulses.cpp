@@ -1,5 +1,6 @@
 // The rest of a step at once, where events are too many or no forces are found: impulses over a piece of it,
-//   J v' >= 0 of what touches,    x' = x + h v'    of what nothing holds, else    x' = x + h (v + v') / 2
+//   J v' >= 0 of what touches,    g + h J (v + v') / 2 >= 0 of what comes down slowly,
+//   x' = x + h v'    of what nothing holds, else    x' = x + h (v + v') / 2
 // of the first order. Bodies that have come into each other are pushed apart after it.
 
 #include "sim/solve/exact/exact.h"

@@ -176,6 +176,15 @@ void ExactSolver<D>::collect_constraints(const State<D>& state, double fastest, 
   chain_response_.build(rows_, response_, dynamics_.chains());
 }
 
+// the rows of constraints_ at the poses of a state
+template <int D>
+void ExactSolver<D>::rebuild_rows(const State<D>& state) {
+  update_poses(state);
+  rows_.clear();
+  for (Constraint& constraint : constraints_) build_jacobian(constraint, turn_of(state, constraint));
+  chain_response_.build(rows_, response_, dynamics_.chains());
+}
+
 // Builds the blocks of the constraints at the present poses: of forces; or of impulses, in which motors and
 // friction in joints have a share by how long they last (s), so in blows none.
 template <int D>
@@ -487,15 +496,9 @@ void ExactSolver<D>::pay_for_lift(State<D>& state) {
 template <int D>
 void ExactSolver<D>::project_state(State<D>& state, double h, bool impacts_follow) {
   using Kind = typename Constraint::Kind;
-  const auto again = [&] {
-    update_poses(state);
-    rows_.clear();
-    for (Constraint& constraint : constraints_) build_jacobian(constraint, turn_of(state, constraint));
-    chain_response_.build(rows_, response_, dynamics_.chains());
-  };
   // how far they are off, at most; into b_ what would bring each row back
   const auto astray = [&] {
-    again();
+    rebuild_rows(state);
     scratch_.chosen.clear();
     double worst = 0;
     b_.setZero(rows_.size());
@@ -530,14 +533,14 @@ void ExactSolver<D>::project_state(State<D>& state, double h, bool impacts_follo
       left = astray();
       if (left <= worst) break;
       restore(scratch_.put, state);
-      again();
+      rebuild_rows(state);
     }
     if (left > worst) break;
     worst = left;
   }
   if (moved > limits_.touching_gap) pay_for_lift(state);
 
-  again();
+  rebuild_rows(state);
   // what has jumped strikes what it holds or bears: an impact
   if (progress_.jumps) return;
   scratch_.chosen.clear();

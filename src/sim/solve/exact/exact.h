@@ -205,7 +205,6 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<ConeBlock<D>> island_blocks;
     std::vector<ConeMode<D>> island_modes;
     Motion saved, put, struck_from;
-    std::vector<Constraint> constraints;
     std::vector<Contact<D>> near;
     std::vector<ContactCandidate<D>> on_rails;
     std::vector<double> accelerations;  // one a body, m/s^2
@@ -292,6 +291,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   JointTurn<D> turn_of(const State<D>& state, const Constraint& constraint) const;
   void collect_constraints(const State<D>& state, double fastest = 1e300, double reach = 0);
   void collect_returning(const State<D>& state, double t);
+  void rebuild_rows(const State<D>& state);
   void build_jacobian(Constraint& constraint, const JointTurn<D>& turn);
   void build_blocks(bool impulses, double last = 0);
   void predict_velocities(std::span<const double> rate, double h);
@@ -338,10 +338,9 @@ class ExactSolver final : public ContactSolver<D>, private System {
   double closing_speed() const;
   bool coming_apart() const;
   void resolve_contact_impacts(State<D>& state);
-  void keep_fastest_pair();
+  void keep_fastest_pair(const State<D>& state);
   void solve_impacts(State<D>& state, double bounce);
   void attempt_impacts(State<D>& state, double bounce);
-  void rebuild_rows();
   void record_impulse(const ContactKey& key, const Constraint& constraint, const Vec<D>& impulse);
 
   // exact_sleep.cpp

@@ -76,22 +76,14 @@ void ExactSolver<D>::resolve_contact_impacts(State<D>& state) {
     const bool in_turn = model_.impacts == Impacts::sequential && round + 1 < kRounds;
     if (!in_turn && round > 0 && fast > 0.5 * before) return;
     before = fast;
-    if (in_turn) keep_fastest_pair();
+    if (in_turn) keep_fastest_pair(state);
     solve_impacts(state, round + 1 == kRounds ? 0 : 1);
   }
 }
 
-// the rows of constraints_, which have become others, at the poses at hand
-template <int D>
-void ExactSolver<D>::rebuild_rows() {
-  rows_.clear();
-  for (Constraint& constraint : constraints_) build_jacobian(constraint, AngularVec<D>::Zero());
-  chain_response_.build(rows_, response_, dynamics_.chains());
-}
-
 // keeps only the contacts of the pair with the greatest approach speed
 template <int D>
-void ExactSolver<D>::keep_fastest_pair() {
+void ExactSolver<D>::keep_fastest_pair(const State<D>& state) {
   const Constraint* worst = nullptr;
   for (const Constraint& constraint : constraints_) {
     if (constraint.kind == Constraint::Kind::contact &&
@@ -105,7 +97,7 @@ void ExactSolver<D>::keep_fastest_pair() {
     const ContactKey& key = candidates_[constraint.of].key;
     return key.a != pair.a || key.b != pair.b;
   });
-  rebuild_rows();
+  rebuild_rows(state);
 }
 
 // All impacts of this instant. Contacts that only lie beside take part where what else is struck makes them
@@ -116,33 +108,33 @@ void ExactSolver<D>::solve_impacts(State<D>& state, double bounce) {
   const auto beside = [&](const Constraint& one, double still) {
     return one.kind == Constraint::Kind::contact && closing_speed(one) <= still;
   };
-  std::vector<Constraint>& all = scratch_.constraints;
-  all = constraints_;
+  const std::vector<Constraint> all = constraints_;
+  std::vector<char> takes;
+  for (const Constraint& one : all) takes.push_back(!beside(one, still_speed_));
   save(state, scratch_.struck_from);
-  std::erase_if(constraints_, [&](const Constraint& one) { return beside(one, still_speed_); });
-  std::vector<Constraint> taken;
-  for (bool grown = true; grown;) {
-    if (constraints_.size() < all.size()) rebuild_rows();
+  for (bool more = true; more;) {
+    constraints_.clear();
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (takes[i]) constraints_.push_back(all[i]);
+    rebuild_rows(state);
     attempt_impacts(state, bounce);
-    grown = false;
-    if (constraints_.size() == all.size()) break;
-    // which of the others close by that
-    taken = constraints_;
+    // the same as impulses of all, and which of the others close by them
     const Eigen::VectorXd impulses = f_;
-    update_poses(state);
     constraints_ = all;
-    rebuild_rows();
-    std::vector<Constraint> more;
-    for (const Constraint& one : constraints_) {
-      const bool known = std::any_of(taken.begin(), taken.end(), [&](const Constraint& it) {
-        return it.kind == one.kind && it.of == one.of;
-      });
-      if (known || !beside(one, kRounding * still_speed_)) more.push_back(one), grown = grown || !known;
+    rebuild_rows(state);
+    f_.setZero(Eigen::Index(rows_.size()));
+    more = false;
+    Eigen::Index at = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Constraint& one = constraints_[i];
+      if (takes[i]) {
+        f_.segment(one.first, one.rows) = impulses.segment(at, one.rows);
+        at += one.rows;
+      } else if (!beside(one, kRounding * still_speed_)) {
+        takes[i] = 1, more = true;
+      }
     }
-    constraints_ = grown ? more : taken;
-    if (grown) restore(scratch_.struck_from, state);
-    update_poses(state);
-    if (!grown) rebuild_rows(), f_ = impulses;
+    if (more) restore(scratch_.struck_from, state);
   }
   for (int i = 0; i < int(rows_.size()); ++i) progress_.given += f_[i] * given(i);
   for (const Constraint& constraint : constraints_) {

@@ -14,7 +14,6 @@ namespace obscura::sim::plane {
 namespace {
 
 constexpr int kMostInstants = 2000;  // of a substep: what is squeezed has no end of them
-constexpr int kFew = 8;              // touches: whatever they are, they are solved together
 constexpr double kBounces = 0.1;     // e: what rises by a hundredth of its fall at most goes pair after pair
 constexpr double kStill = 1e-9;      // of how fast an instant's touches close: what is left as it is
 
@@ -75,7 +74,7 @@ bool Impacts::gather_instant(const Impact& first, const std::vector<ContactBatch
   const auto list = [&](int number) {
     for (int k = 0; k < 2; ++k)
       if (meetings_[number].impact.met[k]) closed_.emplace_back(number, k);
-    few = int(closed_.size()) <= kFew;
+    few = int(closed_.size()) <= InstantImpact<2>::kFew;
   };
   list(0);
   for (int m = 0; few && m < int(meetings_.size()); ++m) {
@@ -205,7 +204,10 @@ bool Impacts::grow_instant(const Impact& first, const std::vector<ContactBatch>&
   Pose ignored;
   move(its.a, first.when, step, ignored, meetings_[0].a);
   move(its.b >= 0 ? its.b : room, first.when, step, ignored, meetings_[0].b);
-  const auto tied = [&](int body) { return body >= 0 && !step.joints.empty() && step.joints.has(body); };
+  const auto tied = [&](int body) {
+    return body >= 0 && !step.joints.empty() &&
+           (step.joints.has(body) || step.struck_joints.component(body) >= 0);
+  };
   if (tied(its.a) || tied(its.b)) return false;
   for (std::size_t known = 0; known < meetings_.size();) {
     known = meetings_.size();
@@ -267,7 +269,8 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
   const auto moves = [&](int body) { return body >= 0 && now_[body].im > 0; };
   bool alone = !together_;
   for (const int body : {its.a, its.b}) alone = alone || (moves(body) && crowded_[body] != 0);
-  if (!alone && !gather_instant(first, batches, step) && !grow_instant(first, batches, step)) {
+  bool solved = false;
+  if (!alone && !gather_instant(first, batches, step) && !(solved = grow_instant(first, batches, step))) {
     // so many touch there that what meets them later goes pair after pair, too
     alone = true;
     for (const int body : {its.a, its.b})
@@ -294,10 +297,12 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
   move(its.a, first.when, step, ignored, meetings_[0].a);
   move(its.b >= 0 ? its.b : int(now_.size()) - 1, first.when, step, ignored, meetings_[0].b);
   const int count = int(closed_.size()), rows = 2 * count, room = int(now_.size()) - 1;
-  couple_instant(batches, step, tied);
-  if (tied) ends_.couple(joints, std::span(instant_responses_).first(std::size_t(rows)), instant_);
-  ++instants_;
-  if (!instant_.solve()) return false;
+  if (!solved) {
+    couple_instant(batches, step, tied);
+    if (tied) ends_.couple(joints, std::span(instant_responses_).first(std::size_t(rows)), instant_);
+    ++instants_;
+    if (!instant_.solve()) return false;
+  }
 
   for (int k = 0; k < count; ++k) {
     const auto& [number, touch] = closed_[k];

@@ -49,7 +49,7 @@ bool SpaceIterative::gather_impact(int first, double t, double h) {
           if (alone && (key.a != pair.a || key.b != pair.b)) continue;
           if (std::find(meets_.begin(), meets_.end(), other) != meets_.end()) continue;
           if (!closed(other, bounding_radius_[body], t, h)) continue;
-          few = int(meets_.size()) < InstantImpact<D>::kMost;
+          few = int(meets_.size()) < InstantImpact<D>::kFew;
           if (few) meets_.push_back(other);
         }
       });
