@@ -168,7 +168,7 @@ void Iterative<D>::iterate(StepPart<D> part) {
       solve_joint_velocities();
       iterate_contacts(i);
     }
-    settle_contacts();
+    settle_contacts(part.h);
     solve_exhausted();
     finish_iterations(part);
   } while (temper(part, round++));

@@ -78,7 +78,7 @@ class Iterative : public ContactSolver<D> {
   /// The i-th of them.
   virtual void iterate_contacts(int i) = 0;
   /// More of those that have not settled.
-  virtual void settle_contacts() = 0;
+  virtual void settle_contacts(double h) = 0;
   /// Of the iterations of a quiet heap in a substep of the fewest a second, so many one of the present ones
   /// has: the last forces are nearer the nearer the last substep is. What hardly moves, by `rate` widths a
   /// second, has all: its forces are to be found once.

@@ -47,7 +47,7 @@ class PlaneIterative final : public Iterative<2> {
   Orientation<D> begun_turn(int body) const override;
   int iterations(StepPart<D> part) const override;
   void iterate_contacts(int i) override;
-  void settle_contacts() override;
+  void settle_contacts(double h) override;
   void solve_exhausted() override;
   void finish_iterations(StepPart<D> part) override;
   double contact_work(StepPart<D> part) const override;

@@ -25,7 +25,7 @@ constexpr int kFewIterations = 50;      // more, of few pairs that others do not
 // More iterations of pairs that have not settled and of their neighbours: if a column is struck from below,
 // the impact must pass through all of it in this substep. Those of few are accelerated by conjugate
 // directions (Silcowitz, Niebe and Erleben 2010).
-void PlaneIterative::settle_contacts() {
+void PlaneIterative::settle_contacts(double) {
   settle_all();
   settle_few();
 }

@@ -36,8 +36,11 @@ void Settling::begin(std::span<const ContactConstraint<3>> contacts, std::span<c
     if (pair.rate < kQuiet) island.quiet += pair.contacts;
   }
   for (int i = 0; i < n; ++i) {
-    if (const int number = island_of[std::size_t(sets_.root(i))]; number >= 0 && counts(i))
-      island_of[std::size_t(i)] = number, ++islands[std::size_t(number)].last;
+    if (const int number = island_of[std::size_t(sets_.root(i))]; number >= 0 && counts(i)) {
+      Island& island = islands[std::size_t(number)];
+      island_of[std::size_t(i)] = number, ++island.last;
+      island.mass += 1 / moving[std::size_t(i)].inverse_mass;
+    }
   }
   int first = 0;
   for (Island& island : islands) {

@@ -19,7 +19,9 @@ struct Settling {
     int contacts = 0, quiet = 0;  // of these, those of pairs that are (sim/solve/iterate/substeps.h)
     int budget = 0, spent = 0;    // contacts times iterations
     double rate = 0;         // the fastest that its bodies pass each other, in widths of the narrower, 1/s
+    double mass = 0;         // kg, of its bodies
     double settled = 0;      // widths, 1/s: smaller corrections count as none
+    double enough = 0;       // J: what an accelerated iteration may change, for its budget to be spent
     bool friction = false;   // whether those of friction count
     bool follows = false;    // whether it is accelerated by conjugate directions
     bool open = true;        // whether it has neither settled nor spent its budget

@@ -50,7 +50,7 @@ class SpaceIterative final : public Iterative<3> {
   void start_contacts(StepPart<D> part) override;
   int iterations(StepPart<D> part) const override;
   void iterate_contacts(int i) override { batches_.iterate(moving_, i % 2 != 0); }
-  void settle_contacts() override;
+  void settle_contacts(double h) override;
   void solve_exhausted() override;
   void finish_iterations(StepPart<D> part) override;
   bool temper(StepPart<D> part, int round) override;

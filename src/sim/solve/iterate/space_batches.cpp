@@ -497,7 +497,9 @@ void SpaceBatches::follow_directions(std::span<PointBody<3>> bodies, Settling& s
   }
   for (Settling::Island& island : settling.islands) {
     island.share = island.before > 0 && island.change <= island.before ? island.change / island.before : 0;
-    if (island.open) island.before = island.change;
+    if (!island.open) continue;
+    island.before = island.change;
+    if (island.follows && island.change < island.enough) island.budget = island.spent;
   }
   double* const numbers = bodies.data()->v.data();
   if (four_lanes) return follow_wide(batches_, rows_, before_, direction_, numbers, open_, settling);

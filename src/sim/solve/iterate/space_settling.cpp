@@ -20,6 +20,8 @@ constexpr int kFewTouches = 500;         // of more, less in proportion, but as 
 constexpr int kSettlingRounds = 3;       // so many were of all
 constexpr int kQuietTouches = 400000;    // of islands that are quiet so many, whatever else there is
 constexpr int kQuietRounds = 400;
+constexpr int kManyTouches = 100;     // of islands of so many that move,
+constexpr double kEnough = 0.3;       // speed, of what gravity gives in the substep
 constexpr int kFewExactly = 60;       // touches
 constexpr double kExactly = 1e-12;    // of how fast bodies of an island pass each other,
 constexpr int kExactTouches = 2000;   // within so many touches times iterations
@@ -40,8 +42,10 @@ int settling_budget(int touches) {
 // from below, the blow is to pass through all of it in this substep. Few go on until hardly anything changes,
 // for a while: then the order in which they are visited does not matter, and mirror images stay so. Those of
 // few, and of those that hardly move, are accelerated (Silcowitz, Niebe and Erleben 2010): a tower of fifty
-// blocks sinks a quarter as far. Bodies on joints are left out.
-void SpaceIterative::settle_contacts() {
+// blocks sinks a quarter as far. Bodies on joints are left out. Where many move, the next substep finds what
+// is left: they go on until an iteration changes their speeds, in the mean, by less than gravity does by a
+// part.
+void SpaceIterative::settle_contacts(double h) {
   settling_.begin(touches_, all_, moving_, joints_.bodies());
   bool follows = false;
   const double rounds = double(settling_budget(int(touches_.size()))) / std::max(1, int(touches_.size()));
@@ -54,6 +58,8 @@ void SpaceIterative::settle_contacts() {
     island.follows =
         (quiet || island.contacts <= kFewTouches) && island.budget >= kFewestFollowed * island.contacts;
     follows = follows || island.follows;
+    if (island.contacts > kManyTouches && island.rate >= kAllButStill)
+      island.enough = kEnough * kEnough * g_ * g_ * h * h * island.mass;
   }
   batches_.set_islands(settling_);
   if (follows) batches_.begin_directions();
