@@ -256,6 +256,7 @@ Orientation<3> SpaceIterative::begun_turn(int body) const {
 void SpaceIterative::warm_start_contacts(const State<D>& state, double h) {
   const int count = int(touches_.size());
   known_force_.resize(touches_.size()), free_slips_.resize(touches_.size());
+  find_middles(state, h);
   each(workers(), count, kTouchPiece, [&](int begin, int end) { set_aims(begin, end, state, h); });
   order_blows(h);
   closing_.assign(model_.bodies.size() + 1, 0), all_.resize(touches_.size());
@@ -313,7 +314,7 @@ void SpaceIterative::set_aims(int begin, int end, const State<D>& state, double 
       touch.closing = !lasting && before < -0.05 * restitution_threshold_ && touch.gap + h * before < 0;
     }
     if (touch.gap * touch.per_width < kNearby && (touch.rests || !touch.after) && !strikes(touch, passes))
-      center(i, state, h, known_one && touch.n.dot(known->force) > 0);
+      center(i, known_one && touch.n.dot(known->force) > 0);
     if (touch.slides) {
       free_slips_[i] = slip(touch);
       const Vec<D> changes = free_slips_[i] - touch.belt - passes;

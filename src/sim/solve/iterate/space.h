@@ -250,7 +250,8 @@ class SpaceIterative final : public Iterative<3> {
   bool slides_on(const ContactConstraint& touch, const Vec<D>& force, const Vec<D>& passes, double h) const;
   bool strikes(const ContactConstraint& touch, const Vec<D>& passes) const;
   void foresee_slip(int touch);
-  void center(int touch, const State<D>& state, double h, bool bears);
+  void find_middles(const State<D>& state, double h);
+  void center(int touch, bool bears);
   void find_bearing(const State<D>& state, double h);
   bool gives(int body) const {
     return !borne_.empty() && !inactive_[std::size_t(body)] && dynamics_.has(body);
@@ -291,7 +292,7 @@ class SpaceIterative final : public Iterative<3> {
   mutable std::vector<double> closes_;  // 1/s, of each touch: how fast it closes; kNotNear: it is not near
   mutable std::vector<double> rates_;   // 1/s, of the touches that close
 
-  std::vector<BodyMotion<D>> stances_;
+  std::vector<BodyMotion<D>> stances_, middles_;  // of bodies: where the substep begins, in its middle
   std::vector<double> margin_,
       swing_;  // bodies: m, see margin(); m/s, of its farthest point by its spin alone
   std::vector<double> thrown_, next_thrown_;  // bodies: m/s, how fast blows of the substep may make them

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/solve/iterate/pieces.h"
 #include "sim/solve/iterate/space.h"
 #include "sim/solve/iterate/substeps.h"
 
@@ -86,22 +87,32 @@ bool SpaceIterative::strikes(const ContactConstraint& touch, const Vec<D>& passe
   return touch.least < -1e8 || (slip(touch) - touch.belt - passes).squaredNorm() > much * much;
 }
 
-void SpaceIterative::center(int number, const State<D>& state, double h, bool bears) {
+// where bodies stand in the middle of the substep
+void SpaceIterative::find_middles(const State<D>& state, double h) {
+  middles_ = stances_;
+  each(workers(), int(stances_.size()), kBodyPiece, [&](int begin, int end) {
+    for (int body = begin; body < end; ++body) {
+      BodyMotion<D>& at = middles_[std::size_t(body)];
+      const AngularVec<D> spin = at.w;
+      if (drives_.number(body) >= 0) {
+        const BodyMotion<D> then = body_motion(state, body);
+        at.v = 0.25 * (3 * at.v + then.v), at.w = 0.25 * (3 * at.w + then.w);
+      } else if (inactive_[std::size_t(body)]) {
+        continue;
+      }
+      if (h * h * at.w.squaredNorm() > kMostTurn * kMostTurn) at.w.setZero();
+      at = ahead<D>(at, begun_turn(body), 0.5 * h);
+      at.w = spin;
+    }
+  });
+}
+
+void SpaceIterative::center(int number, bool bears) {
   ContactConstraint& touch = touches_[std::size_t(number)];
   const int n = int(model_.bodies.size());
   const auto middle = [&](int body) {
     if (body == n) return BodyMotion<D>();
-    BodyMotion<D> at = stances_[std::size_t(body)];
-    if (drives_.number(body) >= 0) {
-      const BodyMotion<D> then = body_motion(state, body);
-      at.v = 0.25 * (3 * at.v + then.v), at.w = 0.25 * (3 * at.w + then.w);
-    } else if (inactive_[std::size_t(body)]) {
-      return at;
-    }
-    if (h * h * at.w.squaredNorm() > kMostTurn * kMostTurn) at.w.setZero();
-    const BodyMotion<D> there = ahead<D>(at, begun_turn(body), 0.5 * h);
-    at.x = there.x, at.room_from_body = there.room_from_body;
-    at.w = stances_[std::size_t(body)].w;
+    BodyMotion<D> at = middles_[std::size_t(body)];
     // they turn as they move after it
     if (touch.after && !inactive_[std::size_t(body)]) at.v = moving_[body].v, at.w = moving_[body].w;
     return at;
