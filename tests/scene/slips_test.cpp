@@ -1,6 +1,9 @@
 // Under `event` a slip begins, turns and ends at its own time, however many contacts share a load: scenes
 // against closed forms, at few steps a second and many.
 
+#include <cmath>
+#include <numbers>
+
 #include "scene/text_run.h"
 
 namespace obscura::scene {
@@ -302,6 +305,52 @@ TEST(Slips, OffAnEdgeEndThere) {
       const double t = 0.3 - (1 - 0.4967) / 2;
       EXPECT_NEAR(run.at(0.3).bodies[number_of(run, "b")].velocity.y(), -9.81 * t, 1e-6)
           << dimension << " at " << rate;
+    }
+  }
+}
+
+// A crate with a load slides over planks that lie end to end, in the middle of a crowd or not, and however
+// all of it is turned: none of its faces meets the end of the next plank. A belt hands it on likewise.
+TEST(Slips, OverTheSeamsOfPlanksMeetNothing) {
+  for (const int dimension : {2, 3}) {
+    const char *size = dimension == 3 ? ", 0.6" : "", *z = dimension == 3 ? ", 0" : "";
+    for (const double degrees : {0.0, 30.0}) {
+      const double c = std::cos(degrees * std::numbers::pi / 180),
+                   s = std::sin(degrees * std::numbers::pi / 180);
+      const auto turned = [&](double x, double y) {
+        return fmt::format("[{:.17g}, {:.17g}{}]", c * x - s * y, s * x + c * y, z);
+      };
+      const auto box = [&](const std::string& name, double wide, double high, double x, double y) {
+        return fmt::format("[[box]]\nname = '{}'\nsize = [{}, {}{}]\nposition = {}\n", name, wide, high, size,
+                           turned(x, y)) +
+               (dimension == 3 ? fmt::format("orientation = [0, 0, {}]\n", degrees)
+                               : fmt::format("angle = {}\n", degrees));
+      };
+      for (const double gap : {0.0, 0.01}) {
+        for (const bool crowded : {false, true}) {
+          std::string bodies;
+          for (int i = 0; i < 4; ++i)
+            bodies +=
+                box(fmt::format("plank{}", i), 0.5, 0.2, -1 + i * (0.5 + gap), -0.1) +
+                "fixed = true\nfriction = 0.5\nsurface_speed = " + (dimension == 3 ? "[1, 0, 0]" : "1") +
+                "\n";
+          const std::string moves = fmt::format("velocity = {}\nmass = 1\n", turned(1, 0));
+          bodies += box("crate", 0.4, 0.3, -1, 0.15) + moves + box("load", 0.2, 0.2, -1, 0.4) + moves;
+          for (int i = 0; crowded && i < 100; ++i)
+            bodies += box(fmt::format("other{}", i), 0.1, 0.1, 4 + 0.2 * (i % 10), 4 - 0.2 * (i / 10));
+          for (const int rate : {60, 600}) {
+            const TextRun run(
+                fmt::format("[room]\nwalls = 'none'\nsize = [20, 20{0}]\ncorner = [-10, -10{1}]\ngravity = "
+                            "{2}\n[physics]\nsolver = 'iterative'\nrate = {3}\n",
+                            dimension == 3 ? ", 20" : "", dimension == 3 ? ", -10" : "", turned(0, -9.81),
+                            rate) +
+                bodies);
+            const sim::Vec3 at = run.at(1.5).bodies[number_of(run, "crate")].position;
+            EXPECT_NEAR(c * at.x() + s * at.y(), 0.5, 1e-6) << dimension << " " << degrees << " " << gap;
+            EXPECT_NEAR(c * at.y() - s * at.x(), 0.15, 1e-6) << dimension << " " << degrees << " " << gap;
+          }
+        }
+      }
     }
   }
 }

@@ -34,7 +34,7 @@ TEST(IterativeBoxes, MeetAsOnePairAfterAnother) {
     plane::BoxManifold four{};
     for (int lane = 0; lane < plane::kLanes; ++lane)
       four.a[lane] = (7 * i + 31 * lane) % kBoxes, four.b[lane] = (13 * i + 57 * lane + 1) % kBoxes;
-    plane::collide_boxes(&four, 1, poses.data(), halves.data());
+    plane::collide_boxes(&four, 1, poses.data(), halves.data(), cores.passing);
     for (int lane = 0; lane < plane::kLanes; ++lane) {
       const int p = four.a[lane], q = four.b[lane];
       if (p == q) continue;

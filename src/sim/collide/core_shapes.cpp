@@ -92,6 +92,12 @@ double clip(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, int f
   const double other = n.x * (pb1.x - pa0.x) + n.y * (pb1.y - pa0.y);
   const double low = std::min(gap, other);
 
+  // in line with each other's ends: with either's normal, the contact would stop a body that may pass
+  const double shared = std::min(sa1, sb1) - std::max(sa0, sb0);
+  if (askew <= kParallelFaces && std::fabs(shared) <= cores.passing * std::min(sa1 - sa0, sb1 - sb0)) {
+    out[0] = out[1] = {};
+    return low;
+  }
   // beside each other: corner to corner, if they are apart at all
   if (low > 0 && (sb0 > sa1 || sb1 < sa0)) {
     out[0] = sb0 > sa1 ? both(a1, b0) : both(a0, b1), out[1] = {};
@@ -139,7 +145,7 @@ double at_corner(const CoreShapes& cores, const CoreShape& round, const Pose& at
 
 }  // namespace
 
-CoreShapes::CoreShapes(const Model<2>& model) {
+CoreShapes::CoreShapes(const Model<2>& model, double passing_part) : passing(passing_part) {
   const auto add = [&](int body, int part, const Shape<2>& shape) {
     CoreShape core;
     core.body = body, core.part = part, core.first = int(x.size());

@@ -27,15 +27,21 @@ struct CoreShape {
   double wide = 0, high = 0;   // half sides of a box centred on the body, m; 0: not such a box
 };
 
+/// Parallel faces: the sine between them is no more. They pass by where they share no more than a part of the
+/// shorter one: a box about to slide from one plank onto the next, bricks across a joint's crossing.
+inline constexpr double kParallelFaces = 1e-3, kAligned = 1e-6;
+
 /// All cores of a model, those of a body side by side.
 struct CoreShapes {
-  explicit CoreShapes(const Model<2>& model);
+  /// `passing_part`: of the shorter of two parallel faces.
+  explicit CoreShapes(const Model<2>& model, double passing_part = kAligned);
 
   std::vector<CoreShape> all;
   std::vector<int> begin;         // a body's first core; one more at the end
   std::vector<double> x, y;       // corners in the body's frame, m
   std::vector<double> nx, ny, d;  // faces: outward normal and its distance from the body's centre
   std::vector<double> bounding_radius, half_thickness;  // of bodies, m
+  double passing;  // parallel faces that share no more, of the shorter one, pass by
 };
 
 /// Which features touch. `none` pads a pair whose two cores have one touch only.
@@ -57,7 +63,8 @@ struct ContactPoint {
 };
 
 /// The nearest features: two if two faces overlap, one at each end of the overlap; else one, and `none` in
-/// the second. Returns a lower bound of the distance, m. If that is `margin` or more, `out` may stay unset.
+/// the second; none where faces pass by. Returns a lower bound of the distance, m. If that is `margin` or
+/// more, `out` may stay unset.
 double find_features(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, const CoreShape& b,
                      const Pose& at_b, Feature out[2], double margin = 1e300);
 ContactPoint evaluate_feature(const CoreShapes& cores, const CoreShape& a, const Pose& at_a,

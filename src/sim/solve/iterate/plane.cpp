@@ -25,6 +25,8 @@ constexpr int kPairIterations = 2000;  // of more: pairs times iterations, but a
 constexpr int kJointIterations = 16;   // with joints, which are solved exactly in each
 constexpr int kStrainIterations = 64;  // if joints press a body far into another
 constexpr double kStrained = 0.02;     // how far that is, of its half thickness
+constexpr double kPassingOverlaps =
+    2;  // allowed overlaps: what lies so deep in one plank slides onto the next
 
 // iterations of push_out()
 constexpr int kProjections = 5;  // for each of a substep
@@ -34,7 +36,7 @@ constexpr int kFewestProjections = 8;
 
 PlaneIterative::PlaneIterative(const Model<D>& model, const std::vector<Path<D>>& paths)
     : Iterative(model, paths, 4 * sim::allowed_overlap(model).share + 2 * AllowedOverlap::kLeast),
-      cores_(model),
+      cores_(model, std::max(plane::kAligned, kPassingOverlaps * allowed_overlap_.share)),
       pairs_(model, cores_),
       impacts_(cores_, pairs_, model.impacts == Impacts::simultaneous),
       driven_(std::size_t(drives_.size())) {

@@ -50,7 +50,8 @@ OBSCURA_INLINE void reference(const V& x, const V& y, const V& c, const V& s, co
 }
 
 template <class V>
-OBSCURA_INLINE void meet_four(BoxManifold& m, int lane, const Pose* poses, const HalfSides* halves) {
+OBSCURA_INLINE void meet_four(BoxManifold& m, int lane, const Pose* poses, const HalfSides* halves,
+                              double passing) {
   using M = Mask<V>;
   Quad<V> a, b;
   gather(&poses->x, m.a + lane, a), gather(&poses->x, m.b + lane, b);
@@ -121,14 +122,19 @@ OBSCURA_INLINE void meet_four(BoxManifold& m, int lane, const Pose* poses, const
   word1 = choose<V>(alone & over0 & (gap0 <= gap1), nothing, word1);
   word0 = choose<V>(alone & over1 & (gap1 <= gap0), nothing, word0);
 
+  // in line with each other's ends: they pass by
+  const V shared = smaller<V>(ht, s1) - larger<V>(-ht, s0);
+  const M passes = (magnitude<V>(mt) <= V{} + kParallelFaces) &
+                   (magnitude<V>(shared) <= (2 * passing) * smaller<V>(ht, gt));
   // beside each other: corner to corner, if they are apart at all
   const M beyond = s0 > ht, before = s1 < -ht;
   const M apart = (low > none) & (beyond | before);
   const M corner_r = choose<V>(beyond, a1, a0), corner_i = choose<V>(beyond, b0, b1);
   const M corners = (M{} + (long long)(Feature::corners << 14)) |
                     choose<V>(swapped, corner_i, corner_r) << 7 | choose<V>(swapped, corner_r, corner_i);
-  const M first = choose<V>(apart, corners, choose<V>(word0 < word1, word0, word1));
-  const M second = choose<V>(apart, nothing, choose<V>(word0 < word1, word1, word0));
+  const M first =
+      choose<V>(passes, nothing, choose<V>(apart, corners, choose<V>(word0 < word1, word0, word1)));
+  const M second = choose<V>(passes | apart, nothing, choose<V>(word0 < word1, word1, word0));
   for (int k = 0; k < Of<V>::lanes; ++k) {
     m.words[0][lane + k] = int(first[k]), m.words[1][lane + k] = int(second[k]);
   }
@@ -137,8 +143,8 @@ OBSCURA_INLINE void meet_four(BoxManifold& m, int lane, const Pose* poses, const
 
 template <class V>
 OBSCURA_INLINE void outdated_all(const ContactBatch* batches, int count, const Motion* v, const Pose* poses,
-                                 const HalfSides* halves, double share, std::vector<ChangedPair>& boxes,
-                                 LaneList& others) {
+                                 const HalfSides* halves, double passing, double share,
+                                 std::vector<ChangedPair>& boxes, LaneList& others) {
   const V part = V{} + share;
   BoxManifold m;
   for (int i = 0; i < count; ++i) {
@@ -152,7 +158,7 @@ OBSCURA_INLINE void outdated_all(const ContactBatch* batches, int count, const M
       const Mask<V> moves = part * speed > load<V>(g.calm + lane);
       if (!any(moves)) continue;
       for (int k = lane; k < lane + Of<V>::lanes; ++k) m.a[k] = g.a[k], m.b[k] = g.b[k];
-      meet_four<V>(m, lane, poses, halves);
+      meet_four<V>(m, lane, poses, halves, passing);
       for (int k = lane; k < lane + Of<V>::lanes; ++k) {
         if (!moves[k - lane]) continue;
         if (!(g.boxes >> k & 1)) {
@@ -165,19 +171,21 @@ OBSCURA_INLINE void outdated_all(const ContactBatch* batches, int count, const M
   }
 }
 OBSCURA_WIDE void outdated_wide(const ContactBatch* batches, int count, const Motion* v, const Pose* poses,
-                                const HalfSides* halves, double share, std::vector<ChangedPair>& boxes,
-                                LaneList& others) {
-  outdated_all<V4>(batches, count, v, poses, halves, share, boxes, others);
+                                const HalfSides* halves, double passing, double share,
+                                std::vector<ChangedPair>& boxes, LaneList& others) {
+  outdated_all<V4>(batches, count, v, poses, halves, passing, share, boxes, others);
 }
 
 template <class V>
-OBSCURA_INLINE void meet_all(BoxManifold* manifolds, int count, const Pose* poses, const HalfSides* halves) {
+OBSCURA_INLINE void meet_all(BoxManifold* manifolds, int count, const Pose* poses, const HalfSides* halves,
+                             double passing) {
   for (BoxManifold* m = manifolds; m < manifolds + count; ++m) {
-    for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) meet_four<V>(*m, lane, poses, halves);
+    for (int lane = 0; lane < kLanes; lane += Of<V>::lanes) meet_four<V>(*m, lane, poses, halves, passing);
   }
 }
-OBSCURA_WIDE void meet_wide(BoxManifold* manifolds, int count, const Pose* poses, const HalfSides* halves) {
-  meet_all<V4>(manifolds, count, poses, halves);
+OBSCURA_WIDE void meet_wide(BoxManifold* manifolds, int count, const Pose* poses, const HalfSides* halves,
+                            double passing) {
+  meet_all<V4>(manifolds, count, poses, halves, passing);
 }
 
 }  // namespace
@@ -194,14 +202,17 @@ std::vector<HalfSides> halves(const CoreShapes& cores) {
 }
 
 void find_outdated(const ContactBatch* batches, int count, const Motion* v, const Pose* poses,
-                   const HalfSides* halves, double share, std::vector<ChangedPair>& boxes, LaneList& others) {
+                   const HalfSides* halves, double passing, double share, std::vector<ChangedPair>& boxes,
+                   LaneList& others) {
   boxes.clear(), others.clear();
-  four_lanes ? outdated_wide(batches, count, v, poses, halves, share, boxes, others)
-             : outdated_all<V2>(batches, count, v, poses, halves, share, boxes, others);
+  four_lanes ? outdated_wide(batches, count, v, poses, halves, passing, share, boxes, others)
+             : outdated_all<V2>(batches, count, v, poses, halves, passing, share, boxes, others);
 }
 
-void collide_boxes(BoxManifold* manifolds, int count, const Pose* poses, const HalfSides* halves) {
-  four_lanes ? meet_wide(manifolds, count, poses, halves) : meet_all<V2>(manifolds, count, poses, halves);
+void collide_boxes(BoxManifold* manifolds, int count, const Pose* poses, const HalfSides* halves,
+                   double passing) {
+  four_lanes ? meet_wide(manifolds, count, poses, halves, passing)
+             : meet_all<V2>(manifolds, count, poses, halves, passing);
 }
 
 }  // namespace obscura::sim::plane

@@ -30,11 +30,13 @@ struct ChangedPair {
 };
 
 /// Among the pairs whose features may have changed in `share` of the time between two pair searches: the
-/// boxes whose features have, and the lanes of all others.
+/// boxes whose features have, and the lanes of all others. `passing`: as in CoreShapes.
 void find_outdated(const ContactBatch* batches, int count, const Motion* v, const Pose* poses,
-                   const HalfSides* halves, double share, std::vector<ChangedPair>& boxes, LaneList& others);
+                   const HalfSides* halves, double passing, double share, std::vector<ChangedPair>& boxes,
+                   LaneList& others);
 
 /// find_features() for pairs of boxes. For pairs of other shapes the result has no meaning.
-void collide_boxes(BoxManifold* manifolds, int count, const Pose* poses, const HalfSides* halves);
+void collide_boxes(BoxManifold* manifolds, int count, const Pose* poses, const HalfSides* halves,
+                   double passing);
 
 }  // namespace obscura::sim::plane

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/math/trig.h"
 #include "sim/solve/iterate/closing_time.h"
@@ -215,8 +216,10 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& 
                          std::fabs(step.dv[a].x - step.dv[b].x) + std::fabs(step.dv[a].y - step.dv[b].y) +
                          (std::fabs(p.w) + std::fabs(step.dv[a].w)) * bounding_radius_[a] +
                          (std::fabs(q.w) + std::fabs(step.dv[b].w)) * bounding_radius_[b];
+  // next to nothing where faces pass by: they have none
   const auto gap = [&] {
-    return pair.touches > 1 ? std::min(at.rows[0].gap, at.rows[1].gap) : at.rows[0].gap;
+    const double least = pair.touches > 1 ? std::min(at.rows[0].gap, at.rows[1].gap) : at.rows[0].gap;
+    return least < kNowhere / 2 ? least : std::numeric_limits<double>::min();
   };
   double apart = -1;  // s: when it was last
   for (double time = from; time <= step.pace.h;) {

@@ -165,7 +165,8 @@ void NearPairs::collide_box_pairs(const std::vector<Pose>& poses) {
     m.a[c.meeting % kLanes] = a, m.b[c.meeting % kLanes] = b;
   }
   sim::each(model_.workers.get(), (count + kLanes - 1) / kLanes, kPlaneBatchPiece, [&](int begin, int end) {
-    plane::collide_boxes(manifolds_.data() + begin, end - begin, poses.data(), halves_.data());
+    plane::collide_boxes(manifolds_.data() + begin, end - begin, poses.data(), halves_.data(),
+                         cores_.passing);
   });
 }
 
@@ -178,8 +179,8 @@ void NearPairs::find_outdated(const std::vector<ContactBatch>& batches, const st
   for (Outdated& found : outdated_) found.boxes.clear(), found.others.clear();
   sim::each(model_.workers.get(), count, piece, [&](int begin, int end) {
     Outdated& found = outdated_[std::size_t(begin / piece)];
-    plane::find_outdated(batches.data() + begin, end - begin, v.data(), poses.data(), halves_.data(), share,
-                         found.boxes, found.others);
+    plane::find_outdated(batches.data() + begin, end - begin, v.data(), poses.data(), halves_.data(),
+                         cores_.passing, share, found.boxes, found.others);
     for (int& lane : found.others) lane += kLanes * begin;
   });
   boxes.clear(), others.clear();
