@@ -1,6 +1,9 @@
 // Rough forces by projected Gauss-Seidel (Moreau 1999; Jean 1999: nonsmooth contact dynamics).
 //   f_n <- max(0, f_n - w_n / K_nn),   f_t <- f_t - w_t / K_tt, back onto |f_t| <= mu f_n
-// one block after another, there and back, each with what those before it have left. Once nothing changes
+// one block after another, there and back, each with what those before it have left. Steep cones of what
+// hangs together can make that grow without end; then by the associated law, which is a convex problem,
+//   (f_n, f_t) <- the nearest to f - w / k in the cone,   k  the trace of the block's K
+// so that where forces in the cones can hold everything, they are found. Once nothing changes
 // any more, the forces of blocks that are mirror images of each other are so too, whatever their order.
 
 #include <algorithm>
@@ -13,6 +16,7 @@ namespace obscura::sim {
 namespace {
 
 constexpr double kStill = 1e-15;  // of the largest b: a change that is none
+constexpr double kGrows = 100;    // of the largest change of the first two sweeps
 
 }  // namespace
 
@@ -36,7 +40,9 @@ void Cone<D>::sweep(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref
     }
     starts_.push_back(int(places_.size()));
   }
-  double change = 0;  // in a sweep, of a response
+  double change = 0, first_change = 0;  // in a sweep, of a response
+  bool associated = false;
+  const std::vector<double> begun(f.data(), f.data() + n_);
   const auto set = [&](int at, double value) {
     const double by = value - f[at];
     if (by == 0) return;
@@ -51,6 +57,22 @@ void Cone<D>::sweep(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref
     const double aim = f[n] - w[n] / K(n, n);
     if (block.law == Law::equal) return set(n, aim);
     if (block.law == Law::bounded) return set(n, std::min(std::max(aim, block.lower), block.upper));
+    if (associated) {
+      double stiff = 0;
+      for (int k = 0; k < D; ++k) stiff += K(n + k, n + k);
+      const double pressed = f[n] - w[n] / stiff;
+      Tangent<D> drag;
+      for (int k = 1; k < D; ++k) drag[k - 1] = f[n + k] - w[n + k] / stiff;
+      const double size = std::sqrt(drag.squaredNorm());
+      if (size <= block.mu * pressed) {
+        set(n, pressed);
+      } else {
+        set(n, std::max(0.0, (pressed + block.mu * size) / (1 + block.mu * block.mu)));
+        drag *= size > 0 ? block.mu * f[n] / size : 0;
+      }
+      for (int k = 1; k < D; ++k) set(n + k, drag[k - 1]);
+      return;
+    }
     set(n, std::max(0.0, aim));
     const double most = block.mu * f[n];
     Tangent<D> drag;
@@ -70,6 +92,12 @@ void Cone<D>::sweep(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref
     change = 0;
     for (std::size_t i = 0; i < blocks.size(); ++i) visit(s % 2 == 0 ? i : blocks.size() - 1 - i);
     if (change <= kStill * fastest) break;
+    if (s < 2) first_change = std::max(first_change, change);
+    if (associated || change <= kGrows * first_change) continue;
+    associated = true;
+    std::copy(begun.begin(), begun.end(), f.data());
+    w.noalias() = K * f;
+    w += b;
   }
 
   for (std::size_t i = 0; i < blocks.size(); ++i) {
