@@ -123,7 +123,7 @@ class Cone {
   std::vector<std::uint64_t> seen_;  // sets of modes tried
   ConeGuess<D> guess_;
   std::vector<int> starts_, places_;  // of K's columns: what is not zero
-  std::vector<double> entries_;
+  std::vector<double> entries_, begun_;
 };
 
 }  // namespace obscura::sim

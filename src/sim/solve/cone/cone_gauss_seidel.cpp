@@ -42,7 +42,7 @@ void Cone<D>::sweep(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref
   }
   double change = 0, first_change = 0;  // in a sweep, of a response
   bool associated = false;
-  const std::vector<double> begun(f.data(), f.data() + n_);
+  begun_.assign(f.data(), f.data() + n_);
   const auto set = [&](int at, double value) {
     const double by = value - f[at];
     if (by == 0) return;
@@ -95,7 +95,7 @@ void Cone<D>::sweep(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref
     if (s < 2) first_change = std::max(first_change, change);
     if (associated || change <= kGrows * first_change) continue;
     associated = true;
-    std::copy(begun.begin(), begun.end(), f.data());
+    std::copy(begun_.begin(), begun_.end(), f.data());
     w.noalias() = K * f;
     w += b;
   }

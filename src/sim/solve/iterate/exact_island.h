@@ -15,8 +15,12 @@ namespace obscura::sim {
 template <int D>
 class ExactIsland {
  public:
-  Eigen::MatrixXd K;                 // rows x rows, 1/kg
-  Eigen::VectorXd speeds, p;         // m/s with the impulses p less what is wanted; N s
+  // with room for the most, so that no size allocates
+  static constexpr int kMostRows = D * kFewSolved;
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostRows, 1>;
+
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostRows, kMostRows> K;  // rows x rows, 1/kg
+  Rows speeds, p;                    // m/s with the impulses p less what is wanted; N s
   std::vector<ConeBlock<D>> blocks;  // one a contact
 
   void resize(int contacts) {

@@ -72,7 +72,8 @@ void Iterative<D>::wake(StepPart<D> step) {
   substeps_ = substeps_for(closing_rates_.ruling, step.h, fewest_substeps_);
   const double whole = step_length(model_.rate);
   part_of_step_ = step.h < (1 - 1e-9) * whole ? step.h / whole : 1;
-  least_substep_ = part_of_step_ < 1 ? whole / substeps_for(closing_rates_.ruling, whole, fewest_substeps_) : 0;
+  least_substep_ =
+      part_of_step_ < 1 ? whole / substeps_for(closing_rates_.ruling, whole, fewest_substeps_) : 0;
   if (closing_rates_.ruling * step.h > 1.0001 * kCloser * substeps_)
     step.state.limits_met.substeps.note(step.state.step);
   notes_.begin(step.state);
@@ -168,6 +169,7 @@ void Iterative<D>::iterate(StepPart<D> part) {
       solve_joint_velocities();
       iterate_contacts(i);
     }
+    solve_jointed();
     settle_contacts(part.h);
     solve_exhausted();
     finish_iterations(part);

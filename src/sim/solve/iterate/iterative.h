@@ -1,17 +1,21 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "sim/math/islands.h"
 #include "sim/math/workers.h"
 #include "sim/model/drives.h"
 #include "sim/model/script.h"
 #include "sim/motion/forward_dynamics.h"
 #include "sim/motion/stability.h"
 #include "sim/solve/contact_solver.h"
+#include "sim/solve/iterate/exact_island.h"
 #include "sim/solve/iterate/joint_solver.h"
 #include "sim/solve/iterate/moving_body.h"
 #include "sim/solve/iterate/substeps.h"
@@ -88,6 +92,23 @@ class Iterative : public ContactSolver<D> {
   /// Exactly what few of them do not settle.
   virtual void solve_exhausted() = 0;
   virtual void finish_iterations(StepPart<D> part) = 0;
+  /// A contact that may bear, and its bodies; below zero: what is none. `place`: by which a run cut in two
+  /// has them in the same order.
+  struct TouchEnds {
+    int place, number, a, b;
+  };
+  /// Its rows, normal first, as iterations have them: speeds less what is wanted, and impulses.
+  struct JointedTouch {
+    std::array<Row<D>, D> rows;
+    std::array<double, D> speed, impulse;  // m/s, N s
+    double mu = 0, per_width = 0;          // 1/m: of the narrower body
+  };
+  virtual void list_touches(std::vector<TouchEnds>& touches) const = 0;
+  virtual JointedTouch read_touch(int number) const = 0;
+  virtual void write_touch(int number, const std::array<double, D>& impulse) = 0;
+  /// Before read_touch() and after write_touch(), if there was any.
+  virtual void begin_jointed() {}
+  virtual void end_jointed(bool) {}
   /// Whether all that is to be done again, with less restitution.
   virtual bool temper(StepPart<D>, int) { return false; }
   /// The work of kinematic bodies and belts by the contacts of the substep, J.
@@ -220,6 +241,8 @@ class Iterative : public ContactSolver<D> {
 
  private:
   void project_joints(StepPart<D> part);
+  void solve_jointed();
+  bool solve_jointed(std::span<const std::tuple<int, int, int>> island);
   void fall_from_rest(std::span<const typename Sleep<D>::Island> islands, double h);
   void find_equilibrium(typename Sleep<D>::Island& island, State<D>& state, double h);
   void note_touches(StepPart<D> part);
@@ -227,6 +250,15 @@ class Iterative : public ContactSolver<D> {
   TouchNotes<D> notes_;
   std::vector<std::pair<int, int>> touching_;
   std::vector<char> on_joints_;  // bodies: of those that rest
+  struct {
+    std::vector<TouchEnds> ends;
+    Islands sets;
+    std::vector<int> counts;
+    std::vector<std::tuple<int, int, int>> few;  // roots of islands, places of contacts and these
+    std::vector<JointedTouch> touches;
+    std::vector<typename JointSolver<D>::JointResponse> responses;
+    ExactIsland<D> island;
+  } jointed_;  // scratch
 };
 
 }  // namespace obscura::sim

@@ -144,6 +144,16 @@ class JointSolver final : public System {
   }
   /// Computes the reaction to response.row. After compute_rows(), of the component of its bodies.
   void compute_response(JointResponse& response);
+  /// Whether joints leave a row nothing to move; after compute_response().
+  bool holds(const JointResponse& response) const { return effective_mass(response) == 0; }
+  /// What the joints answer to an impulse along the row belongs to what they have given in the step.
+  void answer(const JointResponse& response, double impulse) {
+    for (int s = 0; s < 2; ++s) {
+      each_row(response.components[s], [&](int k, int r) {
+        impulses_[r] += response.answer[s][k] * impulse, totals_[r] += response.answer[s][k] * impulse;
+      });
+    }
+  }
   /// The speed along the row of p by a unit of impulse along that of q, with the joints' reaction, 1/kg.
   double response_between(const JointResponse& p, const JointResponse& q) const;
   /// Whether joints leave the row of a response nothing to move where the substep begins, so that no push

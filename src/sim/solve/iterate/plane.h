@@ -50,6 +50,9 @@ class PlaneIterative final : public Iterative<2> {
   void settle_contacts(double h) override;
   void solve_exhausted() override;
   void finish_iterations(StepPart<D> part) override;
+  void list_touches(std::vector<TouchEnds>& touches) const override;
+  JointedTouch read_touch(int number) const override;
+  void write_touch(int number, const std::array<double, D>& impulse) override;
   double contact_work(StepPart<D> part) const override;
   void place_bodies(StepPart<D> part) override;
   void moved_by_joints(const State<D>& state, int body) override;
@@ -105,6 +108,7 @@ class PlaneIterative final : public Iterative<2> {
   void settle_few();
   void find_few();
   double squared_change() const;
+  double least_speed(const plane::ContactBatch& batch, int slot, int k, double gap) const;
   void solve_together(std::span<const std::pair<int, int>> lanes);
   void find_bearing(const State<D>& state, double h);
   void integrate_unconstrained(State<D>& state, double t, double h);

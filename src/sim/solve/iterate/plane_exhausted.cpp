@@ -53,11 +53,22 @@ void PlaneIterative::solve_exhausted() {
     if (count > 0 && count <= kFewSolved)
       lanes.emplace_back(root(g, lane), kLanes * int(&g - batches_.data()) + lane);
   });
-  std::sort(lanes.begin(), lanes.end());
+  // as pairs come, not as they are seated: a run that goes on seats them anew
+  const auto place = [&](const std::pair<int, int>& of) {
+    return std::pair(of.first, batches_[of.second / kLanes].first[of.second % kLanes]);
+  };
+  std::sort(lanes.begin(), lanes.end(), [&](const auto& p, const auto& q) { return place(p) < place(q); });
   for (std::size_t first = 0, last = 0; first < lanes.size(); first = last) {
     while (last < lanes.size() && lanes[last].first == lanes[first].first) ++last;
     solve_together(std::span(lanes).subspan(first, last - first));
   }
+}
+
+// m/s: what a touch of this gap is to have at the end of the substep at least
+double PlaneIterative::least_speed(const ContactBatch& g, int slot, int k, double gap) const {
+  const int lane = slot % kLanes;
+  if (g.struck[k] >> lane & 1) return constants_.least[slot / kLanes].n[k][lane];
+  return std::min(-gap / constants_.h, 0.0) - g.turns[k][lane];
 }
 
 // the contacts of some lanes
@@ -96,10 +107,7 @@ void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) 
     const Motion &va = moving_[g.a[lane]], &vb = moving_[g.b[lane]];
     if (i % 2 == 0) {
       island.blocks[std::size_t(i / 2)] = {.mu = g.mu[lane]};
-      const bool struck = g.struck[k] >> lane & 1;
-      const double least = struck ? constants_.least[slot / kLanes].n[k][lane]
-                                  : std::min(-r.gap / constants_.h, 0.0) - g.turns[k][lane];
-      island.speeds[i] = normal_speed(r, va, vb) - least, island.p[i] = g.p[k][lane];
+      island.speeds[i] = normal_speed(r, va, vb) - least_speed(g, slot, k, r.gap), island.p[i] = g.p[k][lane];
     } else {
       island.speeds[i] = tangent_speed(r, va, vb) + g.surface[k][lane];
       island.p[i] = g.q[k][lane];
@@ -117,7 +125,7 @@ void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) 
       island.K(i, j) = island.K(j, i) = sum;
     }
   }
-  const Eigen::VectorXd before = island.p;
+  const ExactIsland<2>::Rows before = island.p;
   if (!island.solve()) return;
   for (int i = 0; i < rows; ++i) {
     const auto& [slot, k, r] = touches[i / 2];
@@ -131,6 +139,46 @@ void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) 
       v.x += v.im * s.x * change, v.y += v.im * s.y * change, v.w += ii * s.turn * change;
     }
   }
+}
+
+// --- contacts of what hangs on joints (sim/solve/iterate/jointed_contacts.cpp), numbered 2 slot + k
+
+void PlaneIterative::list_touches(std::vector<TouchEnds>& touches) const {
+  for (int i = 0; i < int(batches_.size()); ++i) {
+    const ContactBatch& g = batches_[std::size_t(i)];
+    for (int lane = 0; g.used && lane < kLanes; ++lane) {
+      if (g.pair[lane] < 0) continue;
+      for (int k = 0; k < g.touches[lane]; ++k) {
+        const bool struck = g.struck[k] >> lane & 1;
+        if (g.gap[k][lane] > g.sight[lane] && !struck) continue;
+        const int b = g.b[lane] < int(turns_.size()) ? g.b[lane] : -1;
+        touches.push_back({g.first[lane] + k, 2 * (kLanes * i + lane) + k, g.a[lane], b});
+      }
+    }
+  }
+}
+
+PlaneIterative::JointedTouch PlaneIterative::read_touch(int number) const {
+  const int slot = number / 2, k = number % 2, lane = slot % kLanes;
+  const ContactBatch& g = batches_[std::size_t(slot / kLanes)];
+  const plane::TouchRow r = middle_row(g, lane, k, middle_[g.a[lane]], middle_[g.b[lane]]);
+  const Motion &va = moving_[g.a[lane]], &vb = moving_[g.b[lane]];
+  JointedTouch touch;
+  Row<D>&normal = touch.rows[0], &across = touch.rows[1];
+  normal.a = across.a = g.a[lane], normal.b = across.b = g.b[lane] < int(turns_.size()) ? g.b[lane] : -1;
+  normal.along = {r.nx, r.ny}, normal.angular_a[0] = r.na, normal.angular_b[0] = r.nb;
+  across.along = {-r.ny, r.nx}, across.angular_a[0] = r.ta, across.angular_b[0] = r.tb;
+  touch.speed = {normal_speed(r, va, vb) - least_speed(g, slot, k, r.gap),
+                 tangent_speed(r, va, vb) + g.surface[k][lane]};
+  touch.impulse = {g.p[k][lane], g.q[k][lane]};
+  touch.mu = g.mu[lane], touch.per_width = g.per_width[lane];
+  return touch;
+}
+
+void PlaneIterative::write_touch(int number, const std::array<double, D>& impulse) {
+  const int slot = number / 2, k = number % 2, lane = slot % kLanes;
+  ContactBatch& g = batches_[std::size_t(slot / kLanes)];
+  g.p[k][lane] = impulse[0], g.q[k][lane] = impulse[1];
 }
 
 }  // namespace obscura::sim

@@ -53,6 +53,13 @@ class SpaceIterative final : public Iterative<3> {
   void settle_contacts(double h) override;
   void solve_exhausted() override;
   void finish_iterations(StepPart<D> part) override;
+  void list_touches(std::vector<TouchEnds>& touches) const override;
+  JointedTouch read_touch(int number) const override;
+  void write_touch(int number, const std::array<double, D>& impulse) override;
+  void begin_jointed() override { batches_.store(touches_); }
+  void end_jointed(bool changed) override {
+    if (changed) batches_.load(touches_);
+  }
   bool temper(StepPart<D> part, int round) override;
   double contact_work(StepPart<D> part) const override;
   void place_bodies(StepPart<D> part) override;
