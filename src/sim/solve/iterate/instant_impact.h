@@ -16,9 +16,10 @@ namespace obscura::sim {
 template <int D>
 class InstantImpact {
  public:
-  /// The most contacts of one impact, and the most ends; and so many that hang together are solved so
-  /// whatever they are.
-  static constexpr int kMost = 16, kMostEnds = 16, kFew = D == 2 ? 8 : kMost;
+  /// The most contacts of one impact, and the most ends; so many of crowds; and so many that hang together
+  /// are solved so whatever they are.
+  static constexpr int kMost = D == 2 ? 40 : 16, kMostEnds = 16, kMostOfCrowds = 16,
+                       kFew = D == 2 ? 8 : kMost;
 
   // with room for the most, so that no size allocates
   static constexpr int kMostRows = D * kMost + kMostEnds;

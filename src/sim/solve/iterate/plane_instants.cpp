@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kMostInstants = 2000;  // of a substep: what is squeezed has no end of them
 constexpr double kBounces = 0.1;     // e: what rises by a hundredth of its fall at most goes pair after pair
+constexpr int kCrowd = 50;           // bodies: of more, blows reach less far in one instant
 constexpr double kStill = 1e-9;      // of how fast an instant's touches close: what is left as it is
 
 }  // namespace
@@ -201,6 +202,7 @@ bool Impacts::grow_instant(const Impact& first, const std::vector<ContactBatch>&
   const Pair& its = step.pairs[first.pair];
   if (!(its.material.elasticity > kBounces)) return false;
   const int room = int(now_.size()) - 1;
+  const int most = room <= kCrowd ? InstantImpact<2>::kMost : InstantImpact<2>::kMostOfCrowds;
   Pose ignored;
   move(its.a, first.when, step, ignored, meetings_[0].a);
   move(its.b >= 0 ? its.b : room, first.when, step, ignored, meetings_[0].b);
@@ -252,7 +254,7 @@ bool Impacts::grow_instant(const Impact& first, const std::vector<ContactBatch>&
           meetings_.push_back(meeting);
           for (int k = 0; k < 2; ++k)
             if (meeting.impact.met[k]) closed_.emplace_back(int(meetings_.size()) - 1, k);
-          if (int(closed_.size()) > InstantImpact<2>::kMost) return false;
+          if (int(closed_.size()) > most) return false;
         }
       }
     }
