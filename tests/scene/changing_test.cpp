@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSemicircle = 3.14159265358979323846;
 
-const std::string kSemicirclens =
+const std::string kPins =
     "[[joint]]\nname = \"p\"\ntype = \"{0}\"\nbetween = [\"a\", \"room\"]\n"
     "[[joint]]\nname = \"q\"\ntype = \"{0}\"\nbetween = [\"b\", \"room\"]\n";
 
@@ -121,7 +121,7 @@ TEST(Changing, AGearEngages) {
                "position = [0, 0" + third +
                    "]\nrotation = true\nspin = " + (dimension == 2 ? "360" : "[0, 0, 360]")) +
           disc("b", 2, 0.4, "position = [0.6, 0" + third + "]\nrotation = true") +
-          fmt::format(fmt::runtime(kSemicirclens), dimension == 2 ? "pin" : "hinge") +
+          fmt::format(fmt::runtime(kPins), dimension == 2 ? "pin" : "hinge") +
           "[[joint]]\nname = \"g\"\ntype = \"gear\"\njoints = [\"p\", \"q\"]\nratio = -2\njoined = false\n"
           "[[when]]\ntime = 1.3\ndo = [{ join = \"g\" }]\n"
           "[[when]]\ntime = 4\ndo = [{ release = \"g\" }]\n");
@@ -331,6 +331,35 @@ TEST(Changing, WhatCannotBeChangedIsRefused) {
   expect(wrong, "where in the room? A rod needs a place");
   expect(wrong, "no body, joint or spring is called 'bend'");
   EXPECT_EQ(std::count(wrong.begin(), wrong.end(), '\n'), 1) << wrong;
+}
+
+// A box that is let go is held by the floor, and rubbed by it, from then on: many bodies in the plane looked
+// for its contacts a sixtieth of a second later, and it fell into the floor. Another pushes it: a = (F - mu
+// (m + m') g) / (m + m').
+TEST(Changing, WhatIsLetGoLiesOnTheFloorAtOnce) {
+  for (const bool space : {false, true}) {
+    for (const int rate : {60, 240}) {
+      const auto box = [&](const char* name, double x, const char* more) {
+        return fmt::format(
+            "[[box]]\nname = '{}'\nsize = [0.4, 0.4{}]\nposition = [{}, 0.2{}]\nmass = 1\nfriction = "
+            "0.3\nelasticity = 0\n{}",
+            name, space ? ", 0.4" : "", x, space ? ", 0" : "", more);
+      };
+      const TextRun run(
+          fmt::format("[room]\nsize = {}\nwalls = 'ground'\n[physics]\nsolver = 'iterative'\nrate = {}\n",
+                      space ? "[12, 4, 12]" : "[12, 4]", rate) +
+          box("held", 3, "fixed = true\n") + box("pushes", 2.6, "") +
+          fmt::format("[[force]]\nof = 'pushes'\ncomponents = [10, 0{}]\n[[when]]\ntime = 0.5\ndo = "
+                      "[{{ release = 'held' }}]\n",
+                      space ? ", 0" : ""));
+      const double a = (10 - 0.3 * 2 * 9.81) / 2;
+      for (const double after : {0.005, 0.05}) {
+        const sim::Snapshot::Body now = run.at(0.5 + after).bodies[std::size_t(number_of(run, "held"))];
+        EXPECT_NEAR(now.velocity.x(), a * after, 1e-3 * a * after) << space << " " << rate << " " << after;
+        EXPECT_NEAR(now.position.y(), 0.2, 1e-6) << space << " " << rate << " " << after;
+      }
+    }
+  }
 }
 
 }  // namespace

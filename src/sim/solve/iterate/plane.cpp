@@ -60,7 +60,6 @@ bool PlaneIterative::find_contacts(StepPart<D> step) {
   outran_ = false;
   impacts_.clear();
   const bool due = state.step % every_ == 0 || anew_;
-  anew_ = false;
 
   // bodies that springs and mice hold
   if (dynamics_.ever()) {
@@ -87,6 +86,8 @@ bool PlaneIterative::find_contacts(StepPart<D> step) {
   } else if (!known) {
     build_batches(state, false);
   }
+  // not by a part of a step, as of a frame between two
+  anew_ = anew_ && step.h < (1 - 1e-9) * step_length(model_.rate);
   return true;
 }
 
@@ -380,7 +381,7 @@ void PlaneIterative::report_pair(const Pair& pair, State<D>& state) const {
 
 // searches for pairs, wakes bodies that they reach, and assigns lanes
 void PlaneIterative::update_pairs(State<D>& state, bool known) {
-  const int patience = state.contacts.empty() ? 0 : plane::NearPairs::patience(state.step / every_);
+  const int patience = state.contacts.empty() || anew_ ? 0 : plane::NearPairs::patience(state.step / every_);
   bool changed = pairs_.find(state, poses_, span_, patience);
   if (Sleep<D>::any(state)) place_contacts(state, false);
   // gaps of contacts may be those of a step before
