@@ -21,6 +21,10 @@ constexpr double kAtOnce = 1e-9;    // a part too short to go
 constexpr double kFine = 0.25;      // of the thinner body: how far two may move between two looks
 constexpr int kMostLooks = 200000;  // of a couple in an interval
 constexpr double kSteepest = 2.5;  // of its way: how fast one goes in its interval, at most (Hermite's cubic)
+constexpr double kNotKnown = -1e300;
+constexpr double kSlope = 1e-4;  // of the time between two looks
+constexpr double kGolden = 0.6180339887498949;
+constexpr int kClipLooks = 16;
 constexpr int kMostRoots = 100;
 constexpr double kStraight = 0.8;  // of an interval cut at a release: earlier releases in it are ignored
 constexpr double kBeyond = 1e-12;  // of what a joint bears
@@ -113,6 +117,29 @@ bool ExactSolver<D>::may_close(const State<D>& state, double h, Couple couple) c
   return (poses_[a].x - poses_[b].x).squaredNorm() <= far * far;
 }
 
+// A part between two looks at which a couple lies in each other: where its gap falls from the first and rises
+// to the second, by golden section. kNever: it does not.
+template <int D>
+template <class Gap>
+double ExactSolver<D>::clipping_time(Gap&& gap, double from, double to, double at_from, double at_to) {
+  const double little = kSlope * (to - from);
+  if (!(gap(from + little) < at_from) || !(gap(to - little) < at_to)) return kNever;
+  double low = from, high = to, one = high - kGolden * (high - low), other = low + kGolden * (high - low),
+         at_one = gap(one), at_other = gap(other);
+  for (int i = 0; i < kClipLooks; ++i) {
+    if (at_one < -limits_.touching_gap) return one;
+    if (at_other < -limits_.touching_gap) return other;
+    if (at_one < at_other) {
+      high = other, other = one, at_other = at_one;
+      one = high - kGolden * (high - low), at_one = gap(one);
+    } else {
+      low = one, one = other, at_one = at_other;
+      other = low + kGolden * (high - low), at_other = gap(other);
+    }
+  }
+  return kNever;
+}
+
 // the part of the interval at which a couple closes, beyond what is held; kNever where it does not. Moves
 // their stances.
 template <int D>
@@ -137,7 +164,7 @@ double ExactSolver<D>::closing_time(const State<D>& state, double h, Couple coup
   };
 
   // walls are never left behind: the end tells. Bodies may pass through each other between
-  double high = kNever, before = 0;
+  double high = kNever, before = 0, gap_before = kNotKnown;
   const double thin =
       b < 0 ? 0
             : std::min(limits_.half_thickness[a] > 0 ? limits_.half_thickness[a] : limits_.half_thickness[b],
@@ -147,16 +174,26 @@ double ExactSolver<D>::closing_time(const State<D>& state, double h, Couple coup
   for (int i = 1; i <= looks; ++i) {
     const double part = double(i) / looks;
     progress_.searches += i > 1;
-    if (least(part) < -limits_.touching_gap) {
+    const double gap = least(part);
+    if (gap < -limits_.touching_gap) {
       high = part;
       break;
     }
+    // corners may clip each other between two looks
+    if (gap < ways * (part - before)) {
+      if (gap_before == kNotKnown) gap_before = least(before);
+      if (gap_before > limits_.touching_gap && gap_before + gap < ways * (part - before))
+        high = clipping_time(least, before, part, gap_before, gap);
+      if (high != kNever) break;
+      least(part);
+    }
+    gap_before = gap;
     // no look is needed before what is between them can be used up
     const double apart = b < 0 ? 0
                                : std::sqrt((poses_[a].x - poses_[b].x).squaredNorm()) -
                                      limits_.bounding_radius[a] - limits_.bounding_radius[b];
     const double spare = apart / (kSteepest * ways) * looks - 1;
-    if (spare >= 1) i += int(std::min(spare, double(looks - i)));
+    if (spare >= 1) i += int(std::min(spare, double(looks - i))), gap_before = kNotKnown;
     before = double(i) / looks;
   }
   if (high == kNever) return kNever;

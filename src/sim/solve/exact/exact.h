@@ -357,6 +357,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
   bool integrates(State<D>& state, double t, double h);
   void build_rows(const State<D>& state, double t);
   double first_event(const State<D>& state, double h, Couple& first, bool& passes, const Constraint*& stops);
+  template <class Gap>
+  double clipping_time(Gap&& gap, double from, double to, double at_from, double at_to);
   double closing_time(const State<D>& state, double h, Couple couple);
   double tightening_time(const State<D>& state, double h, Couple& first);
   static bool is_bounded(const Constraint& constraint) {
