@@ -18,6 +18,27 @@ namespace {
 constexpr double kFreeFall = 9.81;
 constexpr double kSmall = 1e-9;
 
+// A motor of 0.3 N m turns a wheel, and by a gear another until that comes to its limit: 0.3 / 0.2 N at the
+// teeth, also once all is at rest.
+TEST(JointLoads, AMotorAgainstAStopIsBorneAtRest) {
+  for (const Manner& way : kManners) {
+    const TextRun run("[room]\nsize = [4, 4]\n" + way.keys +
+                      "\n[[ball]]\nname = 'a'\nradius = 0.2\nposition = [2, 2]\nmass = 1\n"
+                      "[[ball]]\nname = 'b'\nradius = 0.4\nposition = [2.6, 2]\nmass = 1\n"
+                      "[[joint]]\nname = 'axle'\ntype = 'pin'\nbetween = ['a', 'room']\nmotor = { speed = "
+                      "360, most = 0.3 }\n"
+                      "[[joint]]\nname = 'stop'\ntype = 'pin'\nbetween = ['b', 'room']\nlimits = [-90, 90]\n"
+                      "[[joint]]\nname = 'teeth'\ntype = 'gear'\njoints = ['stop', 'axle']\nratio = -0.5\n"
+                      "[contact]\nignore = [['a', 'b']]\n");
+    for (const double t : {1.0, 3.0}) {
+      const sim::Snapshot now = run.at(t);
+      EXPECT_NEAR(now.joints[0].torque.norm(), 0.3, 1e-6) << way.name << t;
+      EXPECT_NEAR(now.joints[0].force.y(), kFreeFall + 1.5, 1e-6) << way.name << t;
+      EXPECT_NEAR(now.joints[2].force.norm(), 1.5, 1e-6) << way.name << t;
+    }
+  }
+}
+
 // What is heavy stands on light wheels, or hangs from light links over a post, by the solver for many bodies
 // too: from the first step on they bear it. In turns with the joints, contacts that saw the light body alone
 // found what it bears by its share of all the mass: 154 to 6008 N instead of 4905, and weights fell at first.

@@ -48,7 +48,10 @@ std::vector<std::string> limit_notes(const sim::Run& run) {
   note(met.work,
        "met a limit of the direct solver's work and went on to the first order only; a higher physics.rate "
        "shares the work out");
-  note(met.substeps, "had bodies meet faster than 4,800 substeps a second follow; a physics.rate above does");
+  note(met.substeps,
+       sim::value(run.rate()) < 4800
+           ? "had bodies meet faster than 4,800 substeps a second follow; a physics.rate above does"
+           : "had bodies meet faster than its steps follow; a higher physics.rate does");
   note(met.passages,
        "had bodies pass each other, or a centre, more closely than the forces were followed: energy may have "
        "come from nowhere; a softening or a higher physics.rate helps");
@@ -60,9 +63,10 @@ std::vector<std::string> limit_notes(const sim::Run& run) {
   const double rough = double(met.rough.steps);
   if (rough > kRoughFor * sim::value(run.rate()) &&
       rough > kRoughPart * double(met.rough.last - met.rough.first + 1))
-    note(met.rough,
-         "had springs, joints or forces swing a body faster than Runge-Kutta follows, which takes energy from "
-         "it; a higher physics.rate helps");
+    note(
+        met.rough,
+        "had springs, joints or forces swing a body faster than Runge-Kutta follows, which takes energy from "
+        "it; a higher physics.rate helps");
   return notes;
 }
 

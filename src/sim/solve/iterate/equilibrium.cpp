@@ -38,10 +38,14 @@ void Iterative<D>::fall_from_rest(std::span<const typename Sleep<D>::Island> isl
   bool jointed = false;
   for (const auto& island : islands) {
     jointed = jointed || island.jointed;
+    // what a motor gives that pushes against a stop is not found from rest: joints go on bearing what they
+    // bore
+    const bool driven = std::any_of(island.bodies.begin(), island.bodies.end(),
+                                    [&](int body) { return on_motors_[std::size_t(body)] != 0; });
     for (const int body : island.bodies) {
       MovingBody<D>& m = moving_[std::size_t(body)] = kept_[std::size_t(body)];
       set_velocity(m, Vec<D>(h * model_.gravity), AngularVec<D>(AngularVec<D>::Zero()));
-      on_joints_[std::size_t(body)] = island.jointed && joints_.has(body);
+      on_joints_[std::size_t(body)] = island.jointed && !driven && joints_.has(body);
     }
     if (island.jointed) velocities_to_joints(island.bodies);
   }

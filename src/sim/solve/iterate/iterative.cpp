@@ -42,6 +42,13 @@ Iterative<D>::Iterative(const Model<D>& model, const std::vector<Path<D>>& paths
       every_(std::max<std::int64_t>(1, std::llround(value(model.rate) / kPairSearches))),
       moving_(model.bodies.size() + 1) {
   for (const Body<D>& body : model.bodies) bounding_radius_.push_back(bounding_radius(body.shape));
+  on_motors_.assign(model.bodies.size(), 0);
+  for (const Joint<D>& joint : model.joints) {
+    if (!joint.motor) continue;
+    joint.each_body([&](int body) {
+      if (body >= 0) on_motors_[std::size_t(body)] = 1;
+    });
+  }
   varies_ =
       dynamics_.ever() || !smooth() ||
       std::any_of(model.bodies.begin(), model.bodies.end(), [](const auto& body) { return body.drag != 0; });

@@ -250,6 +250,7 @@ class Iterative : public ContactSolver<D> {
   TouchNotes<D> notes_;
   std::vector<std::pair<int, int>> touching_;
   std::vector<char> on_joints_;  // bodies: of those that rest
+  std::vector<char> on_motors_;  // bodies: of joints with motors
   struct {
     std::vector<TouchEnds> ends;
     Islands sets;
