@@ -317,7 +317,7 @@ std::vector<Key> world_rows() {
       {.path = "joint.motor.position", .form = expression, .unit = "m", .absent = "it has a `speed`",
        .doc = "Of a slider or a screw: the way to follow, an expression of the time `t`; 0 is as at the start.", .example = "\"0.2*sin(t)\""},
       {.path = "joint.motor.most", .form = number, .range = kPositive, .required = true,
-       .doc = "The motor's largest torque (N m), of a slider or a screw force (N). It follows an `angle` or a `position` with all of it until it is there, and does not brake before: a weak one overshoots and swings about its aim.", .example = "5"},
+       .doc = "The motor's largest torque (N m), of a slider or a screw force (N). It follows an `angle` or a `position` by a speed of 30 times the way left a second, with all of it where that takes more: a weak one cannot brake in time, overshoots and swings about its aim.", .example = "5"},
       {.path = "joint.friction", .form = number, .fallback = "0", .range = kNotNegative,
        .doc = "Dry friction: the largest torque (N m) of a pin, or force (N) of a slider, against its motion. Of a pulley Coulomb's mu between its rope and all that it runs over, wheels too: the greater tension is at most e to the mu times the angle of the wrap times the lesser.", .example = "0.1"},
       {.path = "joint.breaks", .form = number, .unit = "N", .absent = "never", .range = kPositive,

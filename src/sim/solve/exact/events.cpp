@@ -484,7 +484,7 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
   interval_.aims.clear();
   for (const Constraint& constraint : constraints_) interval_.aims.push_back(aim(constraint).speed);
   double length = h, longer = h;
-  cut = false, progress_.cut_by = {-1, -1};
+  cut = false, progress_.cut_by = {-1, -1}, progress_.leaving.reset();
   interval_.forces = f_;
   const Constraint* stops = nullptr;  // what the interval is to end with, coming to its aim
   for (int tries = 0; tries < 20; ++tries) {
@@ -517,6 +517,14 @@ double ExactSolver<D>::advance_to_event(State<D>& state, double t, double h, boo
     bool passes = false;
     double part = std::min(opens, first_event(state, length, meets, passes, stops));
     if (breaks < part) part = breaks, passes = false, meets = held, stops = nullptr;
+    // what was to be past the end of a face is not there yet
+    if (part > 1 && part == progress_.late && part < kNever && part * length < h) {
+      begin_again(state, t);
+      cut = progress_.passes = true, progress_.cut_by = {-1, -1};
+      progress_.released.reset();
+      length *= part;
+      break;
+    }
     if (part > 1) {
       if (model_.collision != Collision::event) return length;
       const double lawful = lawful_length(state, t, length);

@@ -160,6 +160,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
     std::vector<std::pair<int, int>> forced;  // pairs that open contacts would let penetrate at once: held
     bool forced_again = false;
     std::optional<ContactKey> released;              // what the last interval ended by
+    std::optional<ContactKey> leaving;               // whose corner leaves its face there
+    double late = kNever;                            // how far beyond its end, if it is not there yet
     double reserve_at_release = 0;                   // N: force_reserve() of that contact, at its start
     Couple cut_by{-1, -1};                           // what the last interval was cut by
     bool passes = false;                             // it was cut where a curve goes on in another run

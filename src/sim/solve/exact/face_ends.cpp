@@ -16,6 +16,7 @@ constexpr double kPast =
     4e-10;  // of the larger body: so far behind an edge a corner is past it, see collide()
 constexpr double kMostWork = 0.25;  // of what a step of `contact` may cost
 constexpr double kApart = 4;        // touching gaps
+constexpr double kLater = 1e-3;     // of an interval
 constexpr double kLook = 1e-3;      // of the way: over so much of it what leaves a face is seen to slide,
 constexpr double kLastWay = 1e-5;   // or so far, of the smaller body
 
@@ -81,7 +82,7 @@ double ExactSolver<D>::end_of_faces(const State<D>& state, Couple couple, double
 // features are others from there on. In `contact` few times a step, and not where much meets.
 template <int D>
 double ExactSolver<D>::feature_time(const State<D>& state, double h) {
-  double first = kNever;
+  double first = progress_.late = kNever;
   if (model_.collision != Collision::event &&
       (progress_.faces == 0 || progress_.work > kMostWork * limits_.budget))
     return first;
@@ -109,8 +110,12 @@ double ExactSolver<D>::feature_time(const State<D>& state, double h) {
         candidate.kind == ContactCandidate<D>::Kind::corner_of_b ? -candidate.radius_b : candidate.radius_a;
     const Vec<D> place = now.point + inward * now.normal;
     const double slides = slid(state, couple, place, h, 1, 0).norm();
-    if (slides > std::max(kPast * size, kApart * limits_.touching_gap) && !there(1) && there(0)) {
-      double low = 0, high = 1;
+    // of one that has cut the interval before, the end may lie a little beyond: it was seen from afar
+    const bool seen = progress_.leaving == candidate.key;
+    const bool ends = !there(1);
+    if (slides > std::max(kPast * size, kApart * limits_.touching_gap) &&
+        (ends || (seen && !there(1 + kLater))) && there(0)) {
+      double low = ends ? 0 : 1, high = ends ? 1 : 1 + kLater;
       while (high - low > kFeature) {
         const double middle = 0.5 * (low + high);
         (there(middle) ? low : high) = middle;
@@ -120,7 +125,10 @@ double ExactSolver<D>::feature_time(const State<D>& state, double h) {
       // so far that it does not touch what is beside the face; what is round rolls on about its edge
       const bool round = candidate.radius_a + candidate.radius_b > 0;
       const double past = high + std::max(kPast * size, round ? 0 : kApart * limits_.touching_gap) / slides;
-      if (past < 1) first = std::min(first, past);
+      if ((past < 1 || !ends) && past < first) {
+        first = past, progress_.leaving = candidate.key;
+        if (!ends) progress_.late = past;
+      }
     }
     for (const int body : {couple.a, couple.b})
       if (shifts(body)) poses_[body] = end_pose(state, body);
