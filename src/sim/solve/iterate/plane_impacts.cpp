@@ -21,6 +21,7 @@ namespace obscura::sim::plane {
 namespace {
 
 constexpr std::size_t kPairsAhead = 4;  // pairs that are asked for, as they are far apart in memory
+constexpr double kNoTarget = -1e9;      // m/s: of a speed that nothing aims at
 
 // of a body's fastest point, at most, m/s
 double swiftness(const Motion& v, double radius) {
@@ -243,6 +244,19 @@ bool Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
   return true;
 }
 
+// whether a pair parts at a time, by the features that are nearest then
+bool Impacts::parts_at(const Pair& pair, double when, const ContactBatch& g, const Step& step) {
+  const int lane = pair.slot % kLanes;
+  int words[2];
+  features_at(pair, when, step, words);
+  copy_lane(g, lane, fresh_, lane);
+  const PlacedPair at = placed_renewed(pair, words, when, step);
+  for (int k = 0; k < pair.touches; ++k) {
+    if (at.rows[k].gap < kNowhere / 2 && !(normal_speed(at.rows[k], at.a, at.b) > 0)) return false;
+  }
+  return true;
+}
+
 // Sets the targets of the iterations for the pairs of bodies that had impacts. Their rows are those of the
 // middle of the substep. A pair that touches must not approach; a pair that is apart must not close in the
 // rest of the substep. If a pair struck by other features than its rows have, the rows may separate fast
@@ -284,12 +298,19 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
       for (int k = 0; k < pair.touches; ++k) g.turns[k][lane] = v[k] - in_middle(k);
       return;
     }
+    // what bounces, and parts by the features that are nearest then is not held by those that it had: where
+    // corners pass each other they say nothing
+    const bool parts = met == 2 && pair.material.elasticity > kBounces && parts_at(pair, last, g, step);
     const PlacedPair at = placed_at(pair, last, g, step);
     const double left = step.pace.h - at.when;
     for (int k = 0; k < pair.touches; ++k) {
       const double gap = at.rows[k].gap, vn = normal_speed(at.rows[k], at.a, at.b);
       double& least = least_[group].n[k][lane];
       g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
+      if (parts) {
+        least = kNoTarget;
+        continue;
+      }
       const double middle = in_middle(k);
       // Of what goes on bearing and has hardly changed, how its rows turn until the end. Else what rows have
       // in excess, but no more than those where the substep begins: of the middle there is only a way not

@@ -16,6 +16,9 @@
 
 namespace obscura::sim::plane {
 
+/// e: what rises by a hundredth of its fall at most goes pair after pair, and its rows hold it after a blow.
+inline constexpr double kBounces = 0.1;
+
 /// Impacts: contact points that close within a substep faster than the resting speed. Newton's law with
 /// Coulomb friction, normals and friction of a pair together; pairs in the order of time, each at its own
 /// time and at the poses of that time, until none approaches. What meets in one instant is solved together,
@@ -141,8 +144,7 @@ class Impacts {
   bool meets_at(const Pair& pair, double when, const ContactBatch& batches, const Step& step,
                 Meeting& meeting);
   bool gather_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step);
-  bool grow_instant(const Impact& first, const std::vector<ContactBatch>& batches,
-                    const Step& step);
+  bool grow_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step);
   bool near_at(const Pair& pair, int body, double when, const Step& step) const;
   bool knows(int pair) const;
   const Pair& pair_of(int touch, const Step& step) const;
@@ -182,6 +184,7 @@ class Impacts {
     return v;
   }
   bool strikes(int a, int b, const Motion& va, const Motion& vb, const Step& step) const;
+  bool parts_at(const Pair& pair, double when, const ContactBatch& g, const Step& step);
   void leave_to_iterations(std::vector<ContactBatch>& batches, const Step& step);
   const Rows& rows(int group, const std::vector<ContactBatch>& batches, const std::vector<Pose>& poses);
 

@@ -14,7 +14,6 @@ namespace obscura::sim::plane {
 namespace {
 
 constexpr int kMostInstants = 2000;  // of a substep: what is squeezed has no end of them
-constexpr double kBounces = 0.1;     // e: what rises by a hundredth of its fall at most goes pair after pair
 constexpr int kCrowd = 50;           // bodies: of more, blows reach less far in one instant
 constexpr double kStill = 1e-9;      // of how fast an instant's touches close: what is left as it is
 
