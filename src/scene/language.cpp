@@ -136,7 +136,8 @@ std::vector<Key> world_rows() {
        .choices = {"simultaneous", "sequential"},
        .doc = "Impacts at the same instant: solved together, or pair after pair, as Newton's cradle needs. The iterative "
               "solver takes together what hangs together by up to eight contacts, in space sixteen; of more, in the plane, what a "
-              "bouncing blow makes close, up to sixteen, and else pair after pair.",
+              "bouncing blow makes close, up to sixteen and among at most fifty bodies forty, and else pair after pair, where the "
+              "order of the file decides.",
        .example = "\"sequential\""},
       {.path = "physics.rotation", .form = boolean, .fallback = "true",
        .doc = "Whether bodies turn. `false`: forces move bodies but never turn them.", .example = "false"},

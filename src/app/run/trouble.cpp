@@ -5,6 +5,7 @@
 
 #include "app/console/say.h"
 #include "draw/picture/type.h"
+#include "sim/solve/iterate/substeps.h"
 
 namespace obscura::app {
 
@@ -49,7 +50,7 @@ std::vector<std::string> limit_notes(const sim::Run& run) {
        "met a limit of the direct solver's work and went on to the first order only; a higher physics.rate "
        "shares the work out");
   note(met.substeps,
-       sim::value(run.rate()) < 4800
+       sim::value(run.rate()) < sim::kMostSubsteps
            ? "had bodies meet faster than 4,800 substeps a second follow; a physics.rate above does"
            : "had bodies meet faster than its steps follow; a higher physics.rate does");
   note(met.passages,

@@ -94,7 +94,7 @@ double clip(const CoreShapes& cores, const CoreShape& a, const Pose& at_a, int f
 
   // in line with each other's ends: with either's normal, the contact would stop a body that may pass
   const double shared = std::min(sa1, sb1) - std::max(sa0, sb0);
-  if (askew <= kParallelFaces && std::fabs(shared) <= cores.passing * std::min(sa1 - sa0, sb1 - sb0)) {
+  if (askew < kParallel && std::fabs(shared) <= cores.passing * std::min(sa1 - sa0, sb1 - sb0)) {
     out[0] = out[1] = {};
     return low;
   }

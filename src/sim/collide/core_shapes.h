@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "sim/collide/narrow_phase.h"
 #include "sim/model/model.h"
 #include "sim/model/state.h"
 
@@ -27,13 +28,9 @@ struct CoreShape {
   double wide = 0, high = 0;   // half sides of a box centred on the body, m; 0: not such a box
 };
 
-/// Parallel faces: the sine between them is no more. They pass by where they share no more than a part of the
-/// shorter one: a box about to slide from one plank onto the next, bricks across a joint's crossing.
-inline constexpr double kParallelFaces = 1e-3, kAligned = 1e-6;
-
 /// All cores of a model, those of a body side by side.
 struct CoreShapes {
-  /// `passing_part`: of the shorter of two parallel faces.
+  /// Parallel faces pass by where they share no more than `passing_part` of the shorter one.
   explicit CoreShapes(const Model<2>& model, double passing_part = kAligned);
 
   std::vector<CoreShape> all;
@@ -41,7 +38,7 @@ struct CoreShapes {
   std::vector<double> x, y;       // corners in the body's frame, m
   std::vector<double> nx, ny, d;  // faces: outward normal and its distance from the body's centre
   std::vector<double> bounding_radius, half_thickness;  // of bodies, m
-  double passing;  // parallel faces that share no more, of the shorter one, pass by
+  double passing;                                       // passing_part
 };
 
 /// Which features touch. `none` pads a pair whose two cores have one touch only.

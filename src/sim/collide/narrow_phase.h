@@ -166,13 +166,19 @@ template <int D>
 void collide(int a, const Shape<D>& shape_a, const BodyMotion<D>& at_a, int b, const Shape<D>& shape_b,
              const BodyMotion<D>& at_b, double margin, std::vector<ContactCandidate<D>>& out);
 
-/// The sine of the angle between two faces from which on they are askew: where a corner of the one touches the
-/// other face, what else of their overlap is askew touches nothing before they have turned. A corner that slides
-/// past the end of a face would be struck by it: within the depth of an overlap the end meets the other side of
-/// the corner.
+/// The sine of the angle between two faces from which on they are askew: where a corner of the one touches
+/// the other face, what else of their overlap is askew touches nothing before they have turned. A corner that
+/// slides past the end of a face would be struck by it: within the depth of an overlap the end meets the
+/// other side of the corner.
 inline constexpr double kAskew = 0.03;
-/// Which gaps are sought: all, or of those that are askew none but the least. Of the latter, features are to be
-/// sought again before bodies have turned by half of kAskew.
+/// Faces whose sine is less are parallel: they can trade their corners.
+inline constexpr double kParallel = 1e-3;
+/// Of the shorter of two parallel faces, in space of a core: corners of both that lie so close lie at one
+/// place, and what is no wider is not shared. Then the faces pass by: a box about to slide from one plank
+/// onto the next, bricks across a joint's crossing.
+inline constexpr double kAligned = 1e-6;
+/// Which gaps are sought: all, or of those that are askew none but the least. Of the latter, features are to
+/// be sought again before bodies have turned by half of kAskew.
 enum class Gaps { all, touching };
 
 /// How far two shapes of space stay apart along an axis that turns with them: why collide() found nothing. It

@@ -24,9 +24,7 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kAligned = 1e-6;     // of parallel faces: corners of both that lie so close lie at one place
-constexpr double kOblique = 1e-10;    // of other faces
-constexpr double kParallel = 1e-3;    // rad: faces that can trade their corners
+constexpr double kOblique = 1e-10;    // of faces that are not parallel: kAligned
 constexpr double kBeyondFace = 1e-9;  // of a face: this far beyond its end is still over it
 
 using CandidateKind = ContactCandidate<2>::Kind;

@@ -28,9 +28,7 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kAligned = 1e-6;    // of a core: places on parallel faces that lie so close are one
-constexpr double kOblique = 1e-10;   // on others
-constexpr double kParallel = 1e-3;   // rad: faces that can trade their corners
+constexpr double kOblique = 1e-10;   // of a core: kAligned on faces that are not parallel
 constexpr double kAlongside = 1e-4;  // rad: edges that lie beside each other
 constexpr double kSteep = 0.1;       // cosine: a partner that leans more is not under a corner
 constexpr double kSharp = 0.05;      // sine between edges that cross
@@ -557,7 +555,8 @@ void collide(int a, const Shape<3>& shape_a, const BodyMotion<3>& at_a, int b, c
     const Polyhedron of_a(part(shape_a, i), at_a, at_b.x);
     for (int k = 0; k < parts(shape_b); ++k) {
       const Polyhedron of_b(part(shape_b, k), at_b, at_b.x);
-      solid_gaps({a, b, of_a, of_b, i, k, parts(shape_b), digits_a, digits_b}, margin, sought, out, clearance);
+      solid_gaps({a, b, of_a, of_b, i, k, parts(shape_b), digits_a, digits_b}, margin, sought, out,
+                 clearance);
     }
   }
   if (out.size() > before && !keys_suffice(shape_a, shape_b)) {

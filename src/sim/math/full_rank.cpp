@@ -104,6 +104,13 @@ void FullRank::symmetric(std::span<const double> A, int n, double tolerance) {
   if (rank_ < n) factor_gram(n, rank_, f_.data(), ff_);
 }
 
+void FullRank::reserve(int n) {
+  const auto many = std::size_t(n);
+  for (auto* square : {&f_, &g_, &ff_, &gg_, &lu_}) square->reserve(many * many);
+  for (auto* numbers : {&rows_, &cols_, &swaps_, &open_, &top_}) numbers->reserve(many);
+  d_.reserve(many), left_.reserve(many), t_.reserve(2 * many);
+}
+
 // the first n rows hold the pivots
 void FullRank::factor(std::span<const double> B, int all, int n, double tolerance) {
   n_ = n, rank_ = 0;

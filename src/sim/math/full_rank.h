@@ -9,6 +9,9 @@ namespace obscura::sim {
 /// another, and its pseudo-inverse. Matrices lie column by column. Grows only: a warm one allocates nothing.
 class FullRank {
  public:
+  /// Room for matrices of n x n, and of leaning ones of as many rows in all.
+  void reserve(int n);
+
   /// A: n x n, symmetric, positive semidefinite; G = F^T. By Cholesky's method with diagonal pivots; the
   /// remainder counts as zero once no pivot exceeds `tolerance` of the first.
   void symmetric(std::span<const double> A, int n, double tolerance);

@@ -21,7 +21,8 @@ constexpr int kPatience = 8;      // of them, in which the residual shall halve
 constexpr double kNear = 1e-6;    // no other set of modes is nearer
 constexpr int kSmall = 64;        // rows: so few that a factorisation costs nothing
 constexpr int kSweeps[] = {200, 1000};
-constexpr long kMostSets = 5000;  // of modes, tried one by one
+constexpr int kMostSwitches = 20;  // of modes, from one set on
+constexpr long kMostSets = 5000;   // of modes, tried one by one
 
 std::uint64_t hash_with(std::uint64_t hash, std::uint64_t value) {
   hash = (hash ^ value) * 0x9e3779b97f4a7c15u;
@@ -56,6 +57,19 @@ ConeMode<D> fit(const ConeBlock<D>& block, ConeMode<D> mode) {
 }
 
 }  // namespace
+
+template <int D>
+void Cone<D>::reserve(int contacts) {
+  const auto blocks = std::size_t(contacts), rows = D * blocks;
+  factors_.reserve(int(rows)), guess_.reserve(contacts);
+  for (auto* square : {&K_, &A_, &entries_}) square->reserve(rows * rows);
+  for (auto* numbers : {&sigma_, &b_, &g_, &w_, &size_, &x_, &share_, &best_g_, &begun_})
+    numbers->reserve(rows);
+  for (auto* numbers : {&first_, &rows_, &to_}) numbers->reserve(rows);
+  for (auto* modes : {&trial_, &better_, &best_}) modes->reserve(blocks);
+  places_.reserve(rows * rows), starts_.reserve(rows + 1), unknowns_.reserve(rows), wrong_.reserve(blocks);
+  seen_.reserve(kMostSwitches + 1);
+}
 
 template <int D>
 void Cone<D>::scale(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Ref<const Eigen::VectorXd>& b,
@@ -174,7 +188,7 @@ bool Cone<D>::search(const Eigen::Ref<const Eigen::MatrixXd>& K, const Eigen::Re
     const bool there = guess_.guess(kSoftness[i], trial_, all);
     tries_ += guess_.systems() - systems;
     if (!there && !all) break;
-    if (attempt(blocks, all ? 20 : 6)) return true;
+    if (attempt(blocks, all ? kMostSwitches : 6)) return true;
   }
   return all && best_residual_ > kNear && tries_ <= patience && enumerate(blocks);
 }

@@ -45,6 +45,9 @@ class Cone {
   /// Responses w this small, in b's unit, count as zero: for rows all of whose terms are rounding errors.
   double negligible = 0;
 
+  /// Room for problems of so many contacts, so that none of these allocates.
+  void reserve(int contacts);
+
   /// Finds modes and f (n). `modes` is the first guess: one a block, those of the last step, or default
   /// ones; so is f: forces of the last step, or zeros. Without a solution (sliding contacts can have none:
   /// Painleve) found is false, modes and f are the best that was met, and the time it took is bounded. Never

@@ -29,6 +29,15 @@ double dot(std::span<const double> x, std::span<const double> y) {
 }  // namespace
 
 template <int D>
+void ConeGuess<D>::reserve(int contacts) {
+  const std::size_t rows = std::size_t(D) * std::size_t(contacts);
+  factors_.reserve(int(rows));
+  for (auto* square : {&L_, &H_, &work_}) square->reserve(rows * rows);
+  for (auto* numbers : {&u_, &w_, &f_, &F_, &du_, &tried_, &kept_, &shift_}) numbers->reserve(rows);
+  swaps_.reserve(rows), slopes_.reserve(std::size_t(contacts)), built_.reserve(std::size_t(contacts));
+}
+
+template <int D>
 void ConeGuess<D>::begin(std::span<const double> K, std::span<const double> b,
                          std::span<const ConeBlock<D>> blocks, std::span<const int> first,
                          std::span<const double> sigma) {

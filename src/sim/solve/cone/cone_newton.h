@@ -17,6 +17,9 @@ inline constexpr double kDependent = 1e-11;
 template <int D>
 class ConeGuess {
  public:
+  /// Room for so many contacts.
+  void reserve(int contacts);
+
   /// K: n x n, scaled, column by column; b: n; first: the row of each block; sigma: f = sigma * scaled f.
   /// Kept by reference until the next begin.
   void begin(std::span<const double> K, std::span<const double> b, std::span<const ConeBlock<D>> blocks,

@@ -23,6 +23,8 @@ class ExactIsland {
   Rows speeds, p;                    // m/s with the impulses p less what is wanted; N s
   std::vector<ConeBlock<D>> blocks;  // one a contact
 
+  /// Room for the most that there may be.
+  void reserve() { cone_.reserve(kFewSolved), blocks.reserve(kFewSolved), modes_.reserve(kFewSolved); }
   void resize(int contacts) {
     const int rows = D * contacts;
     K.resize(rows, rows), speeds.resize(rows), p.resize(rows), blocks.resize(std::size_t(contacts));

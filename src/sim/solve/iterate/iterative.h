@@ -98,14 +98,14 @@ class Iterative : public ContactSolver<D> {
     int place, number, a, b;
   };
   /// Its rows, normal first, as iterations have them: speeds less what is wanted, and impulses.
-  struct JointedTouch {
+  struct TouchRows {
     std::array<Row<D>, D> rows;
     std::array<double, D> speed, impulse;  // m/s, N s
     double mu = 0, per_width = 0;          // 1/m: of the narrower body
   };
   virtual void list_touches(std::vector<TouchEnds>& touches) const = 0;
-  virtual JointedTouch read_touch(int number) const = 0;
-  virtual void write_touch(int number, const std::array<double, D>& impulse) = 0;
+  virtual TouchRows read_touch(int number) const = 0;
+  virtual void write_touch(int number, const TouchRows& its) = 0;
   /// Before read_touch() and after write_touch(), if there was any.
   virtual void begin_jointed() {}
   virtual void end_jointed(bool) {}
@@ -256,7 +256,7 @@ class Iterative : public ContactSolver<D> {
     Islands sets;
     std::vector<int> counts;
     std::vector<std::tuple<int, int, int>> few;  // roots of islands, places of contacts and these
-    std::vector<JointedTouch> touches;
+    std::vector<TouchRows> touches;
     std::vector<typename JointSolver<D>::JointResponse> responses;
     ExactIsland<D> island;
   } jointed_;  // scratch

@@ -80,26 +80,31 @@ template <int D>
 bool Iterative<D>::solve_jointed(std::span<const std::tuple<int, int, int>> island) {
   using JointResponse = typename JointSolver<D>::JointResponse;
   const int contacts = int(island.size()), rows = D * contacts;
-  std::vector<JointedTouch>& touches = jointed_.touches;
+  std::vector<TouchRows>& touches = jointed_.touches;
   touches.resize(std::size_t(contacts));
   bool settled = true;
   for (int i = 0; i < contacts; ++i) {
-    JointedTouch& touch = touches[std::size_t(i)];
+    TouchRows& touch = touches[std::size_t(i)];
     touch = read_touch(std::get<2>(island[std::size_t(i)]));
     const double wrong = touch.impulse[0] > 0 ? std::fabs(touch.speed[0]) : -touch.speed[0];
     settled = settled && wrong * touch.per_width <= kSettledJointed;
   }
   if (settled) return false;
-  for (const JointedTouch& touch : touches) {
+  for (const TouchRows& touch : touches) {
     for (const int body : {touch.rows[0].a, touch.rows[0].b})
       if (body >= 0 && !joints_.has(body)) joints_.body_motion(body) = begun(body);
   }
   std::vector<JointResponse>& responses = jointed_.responses;
-  while (int(responses.size()) < rows) joints_.reserve(responses.emplace_back());
   ExactIsland<D>& exact = jointed_.island;
+  if (responses.empty()) {
+    // for all that there may be, so that later steps allocate nothing
+    responses.resize(std::size_t(D * kFewJointed[D - 2]));
+    for (JointResponse& response : responses) joints_.reserve(response);
+    touches.reserve(std::size_t(kFewJointed[D - 2])), exact.reserve();
+  }
   exact.resize(contacts);
   for (int i = 0; i < rows; ++i) {
-    const JointedTouch& touch = touches[std::size_t(i / D)];
+    const TouchRows& touch = touches[std::size_t(i / D)];
     JointResponse& response = responses[std::size_t(i)];
     response.row = touch.rows[std::size_t(i % D)];
     joints_.compute_response(response);
@@ -114,7 +119,7 @@ bool Iterative<D>::solve_jointed(std::span<const std::tuple<int, int, int>> isla
   }
   if (!exact.solve()) return false;
   for (int i = 0; i < rows; ++i) {
-    JointedTouch& touch = touches[std::size_t(i / D)];
+    TouchRows& touch = touches[std::size_t(i / D)];
     const double change = exact.p[i] - touch.impulse[i % D];
     touch.impulse[i % D] = exact.p[i];
     if (change == 0) continue;
@@ -127,7 +132,7 @@ bool Iterative<D>::solve_jointed(std::span<const std::tuple<int, int, int>> isla
                       });
   }
   for (int i = 0; i < contacts; ++i)
-    write_touch(std::get<2>(island[std::size_t(i)]), touches[std::size_t(i)].impulse);
+    write_touch(std::get<2>(island[std::size_t(i)]), touches[std::size_t(i)]);
   return true;
 }
 

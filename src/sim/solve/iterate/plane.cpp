@@ -36,7 +36,7 @@ constexpr int kFewestProjections = 8;
 
 PlaneIterative::PlaneIterative(const Model<D>& model, const std::vector<Path<D>>& paths)
     : Iterative(model, paths, 4 * sim::allowed_overlap(model).share + 2 * AllowedOverlap::kLeast),
-      cores_(model, std::max(plane::kAligned, kPassingOverlaps * allowed_overlap_.share)),
+      cores_(model, std::max(kAligned, kPassingOverlaps * allowed_overlap_.share)),
       pairs_(model, cores_),
       impacts_(cores_, pairs_, model.impacts == Impacts::simultaneous),
       driven_(std::size_t(drives_.size())) {

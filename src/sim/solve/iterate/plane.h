@@ -51,8 +51,8 @@ class PlaneIterative final : public Iterative<2> {
   void solve_exhausted() override;
   void finish_iterations(StepPart<D> part) override;
   void list_touches(std::vector<TouchEnds>& touches) const override;
-  JointedTouch read_touch(int number) const override;
-  void write_touch(int number, const std::array<double, D>& impulse) override;
+  TouchRows read_touch(int number) const override;
+  void write_touch(int number, const TouchRows& its) override;
   double contact_work(StepPart<D> part) const override;
   void place_bodies(StepPart<D> part) override;
   void moved_by_joints(const State<D>& state, int body) override;
@@ -108,6 +108,7 @@ class PlaneIterative final : public Iterative<2> {
   void settle_few();
   void find_few();
   double squared_change() const;
+  static bool may_bear(const plane::ContactBatch& batch, int lane, int k);
   double least_speed(const plane::ContactBatch& batch, int slot, int k, double gap) const;
   void solve_together(std::span<const std::pair<int, int>> lanes);
   void find_bearing(const State<D>& state, double h);
@@ -187,8 +188,8 @@ class PlaneIterative final : public Iterative<2> {
   // islands that iterations have not settled
   struct Exhausted {
     struct Touch {
-      int slot, k;
-      plane::TouchRow row;
+      int number;
+      TouchRows at;
     };
     Islands sets;
     std::vector<int> contacts;               // at roots

@@ -124,8 +124,8 @@ OBSCURA_INLINE void meet_four(BoxManifold& m, int lane, const Pose* poses, const
 
   // in line with each other's ends: they pass by
   const V shared = smaller<V>(ht, s1) - larger<V>(-ht, s0);
-  const M passes = (magnitude<V>(mt) <= V{} + kParallelFaces) &
-                   (magnitude<V>(shared) <= (2 * passing) * smaller<V>(ht, gt));
+  const M passes =
+      (magnitude<V>(mt) < V{} + kParallel) & (magnitude<V>(shared) <= (2 * passing) * smaller<V>(ht, gt));
   // beside each other: corner to corner, if they are apart at all
   const M beyond = s0 > ht, before = s1 < -ht;
   const M apart = (low > none) & (beyond | before);

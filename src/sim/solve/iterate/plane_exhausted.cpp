@@ -64,13 +64,6 @@ void PlaneIterative::solve_exhausted() {
   }
 }
 
-// m/s: what a touch of this gap is to have at the end of the substep at least
-double PlaneIterative::least_speed(const ContactBatch& g, int slot, int k, double gap) const {
-  const int lane = slot % kLanes;
-  if (g.struck[k] >> lane & 1) return constants_.least[slot / kLanes].n[k][lane];
-  return std::min(-gap / constants_.h, 0.0) - g.turns[k][lane];
-}
-
 // the contacts of some lanes
 void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) {
   std::vector<Exhausted::Touch>& touches = exhausted_.touches;
@@ -78,70 +71,59 @@ void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) 
   touches.clear();
   for (const auto& [root, slot] : lanes) {
     const ContactBatch& g = batches_[slot / kLanes];
-    const int lane = slot % kLanes;
-    for (int k = 0; k < g.touches[lane]; ++k) {
-      const plane::TouchRow r = middle_row(g, lane, k, middle_[g.a[lane]], middle_[g.b[lane]]);
-      const bool struck = g.struck[k] >> lane & 1;
-      if (r.gap > g.sight[lane] && !struck) continue;
-      touches.push_back({slot, k, r});
-    }
+    for (int k = 0; k < g.touches[slot % kLanes]; ++k)
+      if (may_bear(g, slot % kLanes, k)) touches.push_back({2 * slot + k, read_touch(2 * slot + k)});
   }
   const int rows = 2 * int(touches.size());
-  exhausted_.island.resize(int(touches.size()));
+  island.resize(int(touches.size()));
   struct Side {
     int body;
     double x, y, turn;  // of the row
   };
   const auto side = [&](int i, bool of_b) -> Side {
-    const auto& [slot, k, r] = touches[i / 2];
-    const ContactBatch& g = batches_[slot / kLanes];
+    const Row<D>& row = touches[i / 2].at.rows[i % 2];
     const double sign = of_b ? -1 : 1;
-    const int body = of_b ? g.b[slot % kLanes] : g.a[slot % kLanes];
-    if (i % 2 == 0) return {body, sign * r.nx, sign * r.ny, sign * (of_b ? r.nb : r.na)};
-    return {body, -sign * r.ny, sign * r.nx, sign * (of_b ? r.tb : r.ta)};
+    return {of_b ? row.b : row.a, sign * row.along[0], sign * row.along[1],
+            sign * (of_b ? row.angular_b[0] : row.angular_a[0])};
   };
   for (int i = 0; i < rows; ++i) {
-    const auto& [slot, k, r] = touches[i / 2];
-    const ContactBatch& g = batches_[slot / kLanes];
-    const int lane = slot % kLanes;
-    const Motion &va = moving_[g.a[lane]], &vb = moving_[g.b[lane]];
-    if (i % 2 == 0) {
-      island.blocks[std::size_t(i / 2)] = {.mu = g.mu[lane]};
-      island.speeds[i] = normal_speed(r, va, vb) - least_speed(g, slot, k, r.gap), island.p[i] = g.p[k][lane];
-    } else {
-      island.speeds[i] = tangent_speed(r, va, vb) + g.surface[k][lane];
-      island.p[i] = g.q[k][lane];
-    }
+    const TouchRows& at = touches[i / 2].at;
+    island.blocks[std::size_t(i / 2)] = {.mu = at.mu};
+    island.speeds[i] = at.speed[i % 2], island.p[i] = at.impulse[i % 2];
     for (int j = 0; j <= i; ++j) {
       double sum = 0;
       for (const bool one : {false, true}) {
         const Side s = side(i, one);
-        const double ii = s.body < int(ii_.size()) ? ii_[s.body] : 0;
         for (const bool other : {false, true}) {
           const Side o = side(j, other);
-          if (s.body == o.body) sum += moving_[s.body].im * (s.x * o.x + s.y * o.y) + ii * (s.turn * o.turn);
+          if (s.body >= 0 && s.body == o.body)
+            sum += moving_[s.body].im * (s.x * o.x + s.y * o.y) + ii_[s.body] * (s.turn * o.turn);
         }
       }
       island.K(i, j) = island.K(j, i) = sum;
     }
   }
-  const ExactIsland<2>::Rows before = island.p;
   if (!island.solve()) return;
   for (int i = 0; i < rows; ++i) {
-    const auto& [slot, k, r] = touches[i / 2];
-    ContactBatch& g = batches_[slot / kLanes];
-    (i % 2 == 0 ? g.p : g.q)[k][slot % kLanes] = island.p[i];
-    const double change = island.p[i] - before[i];
+    double& impulse = touches[i / 2].at.impulse[i % 2];
+    const double change = island.p[i] - impulse;
+    impulse = island.p[i];
     for (const bool of_b : {false, true}) {
       const Side s = side(i, of_b);
+      if (s.body < 0) continue;
       Motion& v = moving_[s.body];
-      const double ii = s.body < int(ii_.size()) ? ii_[s.body] : 0;
-      v.x += v.im * s.x * change, v.y += v.im * s.y * change, v.w += ii * s.turn * change;
+      v.x += v.im * s.x * change, v.y += v.im * s.y * change, v.w += ii_[s.body] * s.turn * change;
     }
   }
+  for (const Exhausted::Touch& touch : touches) write_touch(touch.number, touch.at);
 }
 
-// --- contacts of what hangs on joints (sim/solve/iterate/jointed_contacts.cpp), numbered 2 slot + k
+// --- contacts one by one, numbered 2 slot + k, also for those of what hangs on joints
+// (sim/solve/iterate/jointed_contacts.cpp)
+
+bool PlaneIterative::may_bear(const ContactBatch& g, int lane, int k) {
+  return !(g.gap[k][lane] > g.sight[lane]) || (g.struck[k] >> lane & 1);
+}
 
 void PlaneIterative::list_touches(std::vector<TouchEnds>& touches) const {
   for (int i = 0; i < int(batches_.size()); ++i) {
@@ -149,8 +131,7 @@ void PlaneIterative::list_touches(std::vector<TouchEnds>& touches) const {
     for (int lane = 0; g.used && lane < kLanes; ++lane) {
       if (g.pair[lane] < 0) continue;
       for (int k = 0; k < g.touches[lane]; ++k) {
-        const bool struck = g.struck[k] >> lane & 1;
-        if (g.gap[k][lane] > g.sight[lane] && !struck) continue;
+        if (!may_bear(g, lane, k)) continue;
         const int b = g.b[lane] < int(turns_.size()) ? g.b[lane] : -1;
         touches.push_back({g.first[lane] + k, 2 * (kLanes * i + lane) + k, g.a[lane], b});
       }
@@ -158,12 +139,19 @@ void PlaneIterative::list_touches(std::vector<TouchEnds>& touches) const {
   }
 }
 
-PlaneIterative::JointedTouch PlaneIterative::read_touch(int number) const {
+// m/s: what a touch of this gap is to have at the end of the substep at least
+double PlaneIterative::least_speed(const ContactBatch& g, int slot, int k, double gap) const {
+  const int lane = slot % kLanes;
+  if (g.struck[k] >> lane & 1) return constants_.least[slot / kLanes].n[k][lane];
+  return std::min(-gap / constants_.h, 0.0) - g.turns[k][lane];
+}
+
+PlaneIterative::TouchRows PlaneIterative::read_touch(int number) const {
   const int slot = number / 2, k = number % 2, lane = slot % kLanes;
   const ContactBatch& g = batches_[std::size_t(slot / kLanes)];
   const plane::TouchRow r = middle_row(g, lane, k, middle_[g.a[lane]], middle_[g.b[lane]]);
   const Motion &va = moving_[g.a[lane]], &vb = moving_[g.b[lane]];
-  JointedTouch touch;
+  TouchRows touch;
   Row<D>&normal = touch.rows[0], &across = touch.rows[1];
   normal.a = across.a = g.a[lane], normal.b = across.b = g.b[lane] < int(turns_.size()) ? g.b[lane] : -1;
   normal.along = {r.nx, r.ny}, normal.angular_a[0] = r.na, normal.angular_b[0] = r.nb;
@@ -175,10 +163,10 @@ PlaneIterative::JointedTouch PlaneIterative::read_touch(int number) const {
   return touch;
 }
 
-void PlaneIterative::write_touch(int number, const std::array<double, D>& impulse) {
+void PlaneIterative::write_touch(int number, const TouchRows& its) {
   const int slot = number / 2, k = number % 2, lane = slot % kLanes;
   ContactBatch& g = batches_[std::size_t(slot / kLanes)];
-  g.p[k][lane] = impulse[0], g.q[k][lane] = impulse[1];
+  g.p[k][lane] = its.impulse[0], g.q[k][lane] = its.impulse[1];
 }
 
 }  // namespace obscura::sim

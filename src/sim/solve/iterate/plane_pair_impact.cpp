@@ -22,7 +22,7 @@ constexpr int kRounds = 30;          // of both touches
 constexpr double kExact = 1e-13;     // of the impulses, or of the speeds: what is left
 constexpr double kSingular = 1e-12;  // of k_nn k_tt: no smaller determinant is told from rounding
 constexpr double kGain = 1e-13;      // of the energy that moves along the rows: rounding
-constexpr double kParallel = 1e-8;   // of k_00 k_11: two normals are one
+constexpr double kOneNormal = 1e-8;  // of k_00 k_11: two normals are one
 constexpr double kLevel = 1e-3;      // of the speeds: how far from level two touches of a flat face slip
 
 // the impulses of touch k alone, speeds b without them
@@ -134,7 +134,7 @@ void attempt(const PairImpact& it, double bounce, double (&p)[4]) {
 
   // without friction: both press, or one
   const double k00 = it.K[0][0], k11 = it.K[2][2], k01 = it.K[0][2], det = k00 * k11 - k01 * k01;
-  bool both = det > kParallel * k00 * k11;
+  bool both = det > kOneNormal * k00 * k11;
   if (both) p[0] = (k01 * b[2] - k11 * b[0]) / det, p[2] = (k01 * b[0] - k00 * b[2]) / det;
   both = both && p[0] >= 0 && p[2] >= 0;
   if (!both) {

@@ -54,8 +54,8 @@ class SpaceIterative final : public Iterative<3> {
   void solve_exhausted() override;
   void finish_iterations(StepPart<D> part) override;
   void list_touches(std::vector<TouchEnds>& touches) const override;
-  JointedTouch read_touch(int number) const override;
-  void write_touch(int number, const std::array<double, D>& impulse) override;
+  TouchRows read_touch(int number) const override;
+  void write_touch(int number, const TouchRows& its) override;
   void begin_jointed() override { batches_.store(touches_); }
   void end_jointed(bool changed) override {
     if (changed) batches_.load(touches_);
@@ -213,6 +213,8 @@ class SpaceIterative final : public Iterative<3> {
   void begin_rows(int contacts);
   void set_rows(int k, const ContactConstraint& touch, const Vec<D>& normal, const Vec<D>& arm_a,
                 const Vec<D>& arm_b, const BodyMotion<D>& a, const BodyMotion<D>& b);
+  std::array<Row<D>, D> rows_of(const ContactConstraint& touch, const Vec<D>& normal, const Vec<D>& arm_a,
+                                const Vec<D>& arm_b) const;
   void couple_rows(Eigen::Ref<Eigen::MatrixXd> K) const;
   void place_joints(int body, double t, double h);
   bool locked(const ContactConstraint& touch);

@@ -66,13 +66,24 @@ void SpaceIterative::begin_rows(int contacts) {
 void SpaceIterative::set_rows(int k, const ContactConstraint& touch, const Vec<D>& normal,
                               const Vec<D>& arm_a, const Vec<D>& arm_b, const BodyMotion<D>& a,
                               const BodyMotion<D>& b) {
-  const Vec<D> across = perpendicular<D>(normal), ways[D] = {normal, across, normal.cross(across)};
+  const std::array<Row<D>, D> rows = rows_of(touch, normal, arm_a, arm_b);
   for (int i = 0; i < D; ++i) {
-    Row<D>& row = impact_rows_[D * k + i];
+    impact_rows_[D * k + i] = rows[std::size_t(i)];
+    impact_responses_[D * k + i] = response_.of(rows[std::size_t(i)], a, b);
+  }
+}
+
+// the rows of a touch, along its normal and across it
+std::array<Row<3>, 3> SpaceIterative::rows_of(const ContactConstraint& touch, const Vec<D>& normal,
+                                              const Vec<D>& arm_a, const Vec<D>& arm_b) const {
+  const Vec<D> across = perpendicular<D>(normal), ways[D] = {normal, across, normal.cross(across)};
+  std::array<Row<D>, D> rows;
+  for (int i = 0; i < D; ++i) {
+    Row<D>& row = rows[std::size_t(i)];
     row.a = touch.a, row.b = touch.b == int(model_.bodies.size()) ? -1 : touch.b, row.along = ways[i];
     row.angular_a = moment<D>(arm_a, ways[i]), row.angular_b = moment<D>(arm_b, ways[i]);
-    impact_responses_[D * k + i] = response_.of(row, a, b);
   }
+  return rows;
 }
 
 void SpaceIterative::couple_rows(Eigen::Ref<Eigen::MatrixXd> K) const {

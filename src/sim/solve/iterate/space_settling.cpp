@@ -150,29 +150,26 @@ void SpaceIterative::list_touches(std::vector<TouchEnds>& touches) const {
   }
 }
 
-SpaceIterative::JointedTouch SpaceIterative::read_touch(int number) const {
+SpaceIterative::TouchRows SpaceIterative::read_touch(int number) const {
   const ContactConstraint& from = touches_[std::size_t(number)];
   const PointBody<D>&a = moving_[from.a], &b = moving_[from.b];
   const Vec<D> passes = a.v + cross_velocity<D>(a.w, from.arm_a) - b.v - cross_velocity<D>(b.w, from.arm_b),
                slips = passes + from.surface(), impulse = from.normal_impulse * from.n + from.tangent_impulse;
-  const Vec<D> aside = perpendicular<D>(from.n), ways[] = {from.n, aside, from.n.cross(aside)};
-  JointedTouch touch;
-  for (int k = 0; k < D; ++k) {
-    Row<D>& row = touch.rows[std::size_t(k)];
-    row.a = from.a, row.b = from.b < int(model_.bodies.size()) ? from.b : -1;
-    row.along = ways[k], row.angular_a = from.arm_a.cross(ways[k]), row.angular_b = from.arm_b.cross(ways[k]);
-    touch.speed[std::size_t(k)] = k == 0 ? from.n.dot(passes) - from.least : ways[k].dot(slips);
-    touch.impulse[std::size_t(k)] = k == 0 ? from.normal_impulse : ways[k].dot(impulse);
+  TouchRows touch;
+  touch.rows = rows_of(from, from.n, from.arm_a, from.arm_b);
+  for (std::size_t k = 0; k < D; ++k) {
+    const Vec<D>& way = touch.rows[k].along;
+    touch.speed[k] = k == 0 ? from.n.dot(passes) - from.least : way.dot(slips);
+    touch.impulse[k] = k == 0 ? from.normal_impulse : way.dot(impulse);
   }
   touch.mu = from.mu, touch.per_width = from.per_width;
   return touch;
 }
 
-void SpaceIterative::write_touch(int number, const std::array<double, D>& impulse) {
+void SpaceIterative::write_touch(int number, const TouchRows& its) {
   ContactConstraint& touch = touches_[std::size_t(number)];
-  const Vec<D> aside = perpendicular<D>(touch.n);
-  touch.normal_impulse = impulse[0];
-  touch.tangent_impulse = impulse[1] * aside + impulse[2] * touch.n.cross(aside);
+  touch.normal_impulse = its.impulse[0];
+  touch.tangent_impulse = its.impulse[1] * its.rows[1].along + its.impulse[2] * its.rows[2].along;
 }
 
 // Where iterations end before they have converged, contacts may press more than they should, and what they
