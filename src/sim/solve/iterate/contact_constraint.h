@@ -13,6 +13,7 @@ struct ContactConstraint {
   double gap = 0, mu = 0, bounce = 0;
   double per_width = 0;                     // 1/m: of the narrower body
   double rate = 0;                          // 1/s: how fast the bodies pass there, in widths of the narrower
+  double least_strike = 0;                  // m/s: what closes slower has no impact of its own
   double least = 0;                         // m/s: of the normal speed after the substep
   double normal_impulse = 0;                // N s, along n
   Vec<D> tangent_impulse = Vec<D>::Zero();  // N s

@@ -149,6 +149,12 @@ class Iterative : public ContactSolver<D> {
   AllowedOverlap allowed_overlap(const State<D>& state) const {
     return at_start(state) ? kAllowedAtStart : allowed_overlap_;
   }
+  /// m/s: what closes slower is no impact of its own. Of many bodies so is not what closes by clay as slowly
+  /// as the fewest substeps follow. `width`: of the narrower body, m.
+  double least_strike(double elasticity, double width) const {
+    if (elasticity > 0 || !(allowed_overlap_.share > 0)) return restitution_threshold_;
+    return std::max(restitution_threshold_, kCloser * kFewestSubsteps * width);
+  }
   /// The share of overlaps that is corrected after `time` s.
   double corrected_share(const State<D>& state, double time) const {
     return at_start(state) ? 1 : sim::corrected_share(time);

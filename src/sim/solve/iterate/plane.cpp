@@ -46,7 +46,6 @@ PlaneIterative::PlaneIterative(const Model<D>& model, const std::vector<Path<D>>
   gain_.resize(n + 1), bend_.resize(n + 1);
   old_.resize(n + 1), dv_.resize(n + 1), dx_.resize(n + 1), push_.resize(n + 1);
   closing_.resize(n + 1), colours_.resize(n + 1), movers_.assign(n, 0);
-  many_ = sim::allowed_overlap(model).share > 0;
   for (const Body<D>& body : model.bodies) {
     drag_ = drag_ || body.drag != 0;
     fixed_.push_back(body.fixed);

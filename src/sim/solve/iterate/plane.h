@@ -138,7 +138,6 @@ class PlaneIterative final : public Iterative<2> {
   double span_ = 0;                      // s between two pair searches
   bool anew_ = false;                    // the next step searches for pairs, even if no search is due
   bool outran_ = false;                  // a body has left the margin of the last pair search
-  bool many_ = false;                    // bodies that move: not each blow of clay is one of its own
   bool drag_ = false;
 
   // One entry a body, and one more that never moves, for walls

@@ -19,8 +19,6 @@ namespace {
 
 constexpr double kCalm =
     0.02;  // of its thickness: what a pair may move between two pair searches, features kept
-constexpr double kSoft =
-    0.05;  // of its thickness between two pair searches: slower inelastic closings are no impacts
 constexpr int kColours = 40;    // lanes of more colours hold one pair each
 constexpr int kPerSpare = 128;  // lanes of a colour: one group more for so many
 constexpr int kAhead = 8;       // lanes
@@ -216,9 +214,7 @@ void PlaneIterative::fill_lane(int i, const State<D>& state) {
   g.a[lane] = pair.a, g.iia[lane] = ii_[pair.a];
   g.b[lane] = pair.b >= 0 ? pair.b : n, g.iib[lane] = pair.b >= 0 ? ii_[pair.b] : 0;
   g.pair[lane] = i, g.first[lane] = pair.first, g.touches[lane] = static_cast<unsigned char>(pair.touches);
-  g.impact_speed[lane] =
-      -(pair.material.elasticity > 0 ? restitution_threshold_
-                                     : std::max(restitution_threshold_, many_ ? kSoft * thin / span_ : 0));
+  g.impact_speed[lane] = -least_strike(pair.material.elasticity, 2 * thin);
   pair.impact_speed = float(-0.999 * g.impact_speed[lane]);
   g.sight[lane] = sight, g.mu[lane] = pair.material.friction, g.radius[lane] = radius;
   g.per_width[lane] = 1 / std::max(2 * thin, kPointWidth * model_.scale);

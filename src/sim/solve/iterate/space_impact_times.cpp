@@ -117,18 +117,18 @@ Vec<3> SpaceIterative::free_gain(int body) const {
 // No slower does a touch strike: kRestingGains, of gravity restitution_threshold_. Schemes that share out a
 // whole step lead what bears aside, and it is struck.
 double SpaceIterative::strike_speed(const ContactConstraint& touch) const {
-  if (!smooth()) return restitution_threshold_;
+  if (!smooth()) return touch.least_strike;
   // and joints whip what was closing already
   const auto tied = [&](int body) { return body < int(inactive_.size()) && joints_.has(body); };
   if (tied(touch.a) || tied(touch.b)) {
     Vec<D> passes = stances_[touch.a].velocity(touch.arm_a);
     if (touch.b < int(inactive_.size())) passes -= stances_[touch.b].velocity(touch.arm_b);
-    if (touch.n.dot(passes) < -restitution_threshold_) return restitution_threshold_;
+    if (touch.n.dot(passes) < -restitution_threshold_) return touch.least_strike;
   }
   const auto gain = [&](int body) -> Vec<D> {
     return body < int(inactive_.size()) && inactive_[body] ? Vec<D>(Vec<D>::Zero()) : free_gain(body);
   };
-  return std::max(restitution_threshold_, -kRestingGains * touch.n.dot(gain(touch.a) - gain(touch.b)));
+  return std::max(touch.least_strike, -kRestingGains * touch.n.dot(gain(touch.a) - gain(touch.b)));
 }
 
 // How fast the matter of two bodies passes at most, m/s, wherever they touch in the step before an impact: at

@@ -264,7 +264,7 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
   const int n = int(model_.bodies.size());
   struck_ = false;
   when_.assign(n + 1, -1), rested_since_.assign(n + 1, 0), due_.clear();
-  const auto fast = [&](int i) { return most_passing(touches_[i]) >= restitution_threshold_; };
+  const auto fast = [&](int i) { return most_passing(touches_[i]) >= touches_[i].least_strike; };
   std::atomic<bool> any = false;
   each(workers(), int(touches_.size()), kTouchPiece, [&](int begin, int end) {
     for (int i = begin; i < end && !any.load(std::memory_order_relaxed); ++i)
@@ -446,7 +446,7 @@ void SpaceIterative::find_closing(const State<D>& state, double h) {
       ContactConstraint& touch = touches_[i];
       while (known != state.contacts.end() && known->key < touch.key) ++known;
       reach_[i] = {touch.gap, 0, approach_limit(i, h)}, may_close_[i] = 0;
-      if (most_passing(touch) < restitution_threshold_) continue;
+      if (most_passing(touch) < touch.least_strike) continue;
       if (known != state.contacts.end() && known->key == touch.key && lasts(touch, known->force)) continue;
       touch.passes = stays_apart(i, kInTime * bounding_radius_[touch.a], h), may_close_[i] = !touch.passes;
     }

@@ -282,7 +282,7 @@ SpaceIterative::ContactConstraint SpaceIterative::constraint(const ContactCandid
   touch.arm_a = now.point + apart - stances_[a].x, touch.arm_b = now.point - apart - at_b.x;
   touch.mu = pair.friction, touch.bounce = pair.elasticity;
   touch.per_width = 1 / (b == none ? width_[a] : std::min(width_[a], width_[b]));
-
+  touch.least_strike = least_strike(touch.bounce, 1 / touch.per_width);
   if (carries(a) || carries(b)) touch.belt = belt(touch);
   return touch;
 }
