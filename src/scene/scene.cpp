@@ -20,8 +20,8 @@
 #include "scene/fields.h"
 #include "scene/figure.h"
 #include "scene/forces.h"
-#include "scene/input.h"
 #include "scene/idle_keys.h"
+#include "scene/input.h"
 #include "scene/joints.h"
 #include "scene/links.h"
 #include "scene/overlap.h"
@@ -35,6 +35,7 @@
 #include "sim/constraint/material.h"
 #include "sim/math/trig.h"
 #include "sim/math/workers.h"
+#include "sim/motion/infinitesimal_motion.h"
 #include "sim/motion/stability.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/solve/exact/couples.h"
@@ -429,7 +430,14 @@ std::vector<std::string> Scene::programs() const {
 }
 
 std::vector<sim::Trouble> Scene::stability_warnings() const {
-  return std::visit([](const auto& it) { return sim::stability_warnings(it.model); }, world);
+  return std::visit(
+      [](const auto& it) {
+        std::vector<sim::Trouble> all = sim::stability_warnings(it.model);
+        for (sim::Trouble& each : sim::infinitesimal_motions(it.model, it.state))
+          all.push_back(std::move(each));
+        return all;
+      },
+      world);
 }
 
 Scene read(const std::string& file, const std::vector<std::string>& sets) {

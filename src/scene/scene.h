@@ -89,7 +89,8 @@ struct Scene {
 
   int dimension() const { return world.index() == 0 ? 2 : 3; }
   /// A run of it from its start, or from a state that was saved of one; null if that is no state of this
-  /// scene. The troubles that are known beforehand. See sim/step/run.h.
+  /// scene. The troubles that are known beforehand: springs too stiff for the step, joints that are straight.
+  /// See sim/step/run.h.
   std::unique_ptr<sim::Run> run(std::span<const std::uint64_t> saved = {}) const;
   /// The same for a picture: where the scene says so, it goes on when it diverges.
   std::unique_ptr<sim::Run> shown_run(std::span<const std::uint64_t> saved = {}) const;

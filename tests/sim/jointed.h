@@ -23,6 +23,12 @@ inline Joint<2> rod(End<2> a, End<2> b, double length) {
   return joint;
 }
 
+/// A bar of 1 kg from one place to another.
+inline int add_bar(World<2>& world, Vec2 from, Vec2 to) {
+  const Vec2 way = to - from;
+  return add_box(world, {way.norm(), 0.02}, 1, (from + to) / 2, {0, 0}, std::atan2(way.y(), way.x()));
+}
+
 /// A table's row at time t, s; empty where it has none.
 inline std::vector<double> row_at(const char* name, double t) {
   for (const auto& row : table(name)) {

@@ -48,12 +48,6 @@ TEST_P(Joints, AMotorReachesItsSpeedAtItsTorque) {
   EXPECT_NEAR(stepped(world, 3000).spin[0][0], 3, 1e-12);
 }
 
-// a bar of 1 kg from one place to another
-int add_bar(World<2>& world, Vec2 from, Vec2 to) {
-  const Vec2 way = to - from;
-  return add_box(world, {way.norm(), 0.02}, 1, (from + to) / 2, {0, 0}, std::atan2(way.y(), way.x()));
-}
-
 // x = r cos a + sqrt(l^2 - r^2 sin^2 a), and the motor is strong enough to be at its speed after a step: to
 // what is rounded where joints are put back
 TEST_P(Joints, ACrankDrivesItsPistonAsTheClosedFormSays) {
