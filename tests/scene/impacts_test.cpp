@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <random>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -859,6 +860,49 @@ TEST(Impacts, FastSpinningBoxesKeepTheirEnergy) {
     };
     const double before = energy(0);
     EXPECT_NEAR(energy(0.06), before, 1e-9 * before) << rate;
+  }
+}
+
+// Twelve boxes and balls that spin and fly without gravity, elastic and smooth: those that turn into each
+// other within a step, and those that pass by, and what has struck something else before. Energy is that of
+// how they move.
+TEST(Impacts, AGasOfBoxesAndBallsKeepsItsEnergy) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    std::mt19937 bits(seed);
+    const auto between = [&](double low, double high) {
+      return low + (high - low) * (double(bits()) / 4294967296.0);
+    };
+    std::string bodies;
+    std::vector<double> masses, inertias;
+    for (int i = 0; i < 12; ++i) {
+      const bool ball = between(0, 1) < 0.3;
+      const double mass = between(0.3, 3), a = between(0.2, 0.5), b = between(0.2, 0.5);
+      masses.push_back(mass);
+      inertias.push_back(ball ? 0 : mass / 12 * (a * a + b * b));
+      bodies += ball ? fmt::format("[[particle]]\nradius = {}\n", a / 2)
+                     : fmt::format("[[box]]\nsize = [{}, {}]\nangle = {}\nspin = {}\n", a, b, between(0, 180),
+                                   between(-400, 400));
+      bodies += fmt::format(
+          "name = 'b{}'\nposition = [{}, {}]\nvelocity = [{}, {}]\nmass = {}\nelasticity = 1\nfriction = 0\n",
+          i, 0.6 + 0.9 * (i % 4), 0.7 + 1.2 * (i / 4), between(-6, 6), between(-6, 6), mass);
+    }
+    for (const int rate : {60, 240}) {
+      const TextRun run(
+          fmt::format("duration = 4\n[room]\nsize = [4, 4]\ngravity = [0, 0]\n[physics]\n"
+                      "solver = 'iterative'\nrate = {}\n{}",
+                      rate, bodies));
+      const auto energy = [&](double t) {
+        const sim::Snapshot now = run.at(t);
+        double sum = 0;
+        for (std::size_t i = 0; i < masses.size(); ++i) {
+          const sim::Snapshot::Body& body = now.bodies[number_of(run, fmt::format("b{}", i))];
+          sum += 0.5 * masses[i] * body.velocity.squaredNorm() + 0.5 * inertias[i] * body.spin.squaredNorm();
+        }
+        return sum;
+      };
+      const double before = energy(0);
+      EXPECT_NEAR(energy(4), before, 1e-12 * before) << "gas " << seed << " at " << rate;
+    }
   }
 }
 

@@ -199,7 +199,8 @@ OBSCURA_INLINE bool warm_start_all(ContactBatch* batches, int count, const Pose*
       const V w = magnitude<V>(before.a.z) + magnitude<V>(before.b.z);
       const V v1 = magnitude<V>(before.a.x - before.b.x) + magnitude<V>(before.a.y - before.b.y);
       const V far = load<V>(g.far + lane);
-      const V fastest = v1 + far * w, turns = bend * (far * w2 + 2.0 * w * fastest);
+      const V fastest = v1 + far * w, turning = far * w2 + 2.0 * w * fastest;
+      const V turns = bend * turning, sooner = h * turning;
       const V impact_speed = load<V>(g.impact_speed + lane);
       const Mask<V> polygons = load<V>(g.radius + lane) <= none;
       const V nearby = (V{} + kNearby) / load<V>(g.per_width + lane), belt = load<V>(g.belt + lane);
@@ -213,7 +214,7 @@ OBSCURA_INLINE bool warm_start_all(ContactBatch* batches, int count, const Pose*
         const Mask<V> bears = px * r.nx + py * r.ny > none;
         const Mask<V> strikes = ~(bears & (vn >= -kLasting * fastest));
         slow |= strikes & (vn < creep) & (r.gap + h * vn < none) & (r.gap <= sight);
-        fast |= strikes & (vn < impact_speed) & (r.gap + h * (vn - gain) < turns) & (r.gap <= sight);
+        fast |= strikes & (vn - sooner < impact_speed) & (r.gap + h * (vn - gain) < turns) & (r.gap <= sight);
         if (g.corners[k])
           fast |= mask<V>(g.corners[k], lane) & polygons & (-fastest < impact_speed) &
                   (r.gap < h * (fastest + gain));

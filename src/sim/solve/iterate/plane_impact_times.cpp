@@ -95,9 +95,17 @@ double Impacts::closing_guess(const Pair& pair, int k, const ContactBatch& g, co
 double Impacts::closing_time(const Pair& pair, int k, const ContactBatch& g, const PlacedPair& start,
                              const Step& step) const {
   const double guess = closing_guess(pair, k, g, start, step);
-  if (guess == kNeverCloses || start.rows[k].gap <= 0) return guess;
+  if (start.rows[k].gap <= 0) return guess;
   const int lane = pair.slot % kLanes;
   const double dvn = normal_speed(start.rows[k], step.dv[g.a[lane]], step.dv[g.b[lane]]);
+  if (guess == kNeverCloses) {
+    // what turns may begin to close on the way
+    const double time = step.pace.h - start.when, vn = normal_speed(start.rows[k], start.a, start.b);
+    const double nearer = 0.5 * time * time * most_bend(pair, start.a, start.b);
+    if (start.rows[k].gap > g.sight[lane] ||
+        start.rows[k].gap + time * (vn + 0.5 * time / step.pace.h * dvn) >= nearer)
+      return kNeverCloses;
+  }
   return sim::closing_time(start.when, guess, step.pace.h,
                            strike_speed(pair, g.impact_speed[lane], dvn, step), [&](double when) {
                              const PlacedPair at = placed_at(pair, when, g, step);
@@ -105,14 +113,22 @@ double Impacts::closing_time(const Pair& pair, int k, const ContactBatch& g, con
                            });
 }
 
+// by how much, at most, a gap's second derivative is below zero by how its bodies turn, m/s^2
+double Impacts::most_bend(const Pair& pair, const Motion& va, const Motion& vb) const {
+  const double far = std::max(bounding_radius_[pair.a], pair.b < 0 ? 0 : bounding_radius_[pair.b]),
+               w = std::fabs(va.w) + std::fabs(vb.w);
+  return far * (va.w * va.w + vb.w * vb.w) +
+         2 * w * (std::fabs(va.x - vb.x) + std::fabs(va.y - vb.y) + far * w);
+}
+
 // Whether a pair may meet with an impact in what is left of the step, by its rows as it stands: most do not.
 bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Step& step) const {
   const int lane = pair.slot % kLanes, a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
-  double spare = -1;  // what it may come nearer than by these rows and velocities, m
   const double from = std::max({0.0, when_[a], when_[b]}), time = step.pace.h - from;
   Pose pose_a = step.poses[a], pose_b = step.poses[b];
   Motion va = now_[a], vb = now_[b];
   if (from > 0) move(a, from, step, pose_a, va), move(b, from, step, pose_b, vb);
+  const double bend = most_bend(pair, va, vb);
   const auto fastest = [&] {
     return std::fabs(va.x - vb.x) + std::fabs(va.y - vb.y) +
            g.far[lane] * (std::fabs(va.w) + std::fabs(vb.w));
@@ -124,16 +140,10 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Step& step
     const double dvn = normal_speed(r, step.dv[a], step.dv[b]);
     const double ends = vn + time / step.pace.h * gains(dvn, pair);
     const double slow = strike_speed(pair, g.impact_speed[lane], dvn, step);
-    if (ends > -pair.impact_speed || !(ends < slow)) continue;
+    if (!(ends - time * bend < slow)) continue;
+    // what it may come nearer than by these rows and velocities
     const double left = r.gap + time * (vn + 0.5 * time / step.pace.h * dvn);
-    if (left >= 0 && spare < 0) {
-      const double far = std::max(bounding_radius_[a], bounding_radius_[b]),
-                   w = std::fabs(va.w) + std::fabs(vb.w);
-      spare = 0.5 * time * time *
-              (far * (va.w * va.w + vb.w * vb.w) +
-               2 * w * (std::fabs(va.x - vb.x) + std::fabs(va.y - vb.y) + far * w));
-    }
-    if (left >= 0 && left >= spare) continue;
+    if (left >= 0 && left >= 0.5 * time * time * bend) continue;
     if (r.gap <= g.sight[lane]) return true;
   }
   return false;

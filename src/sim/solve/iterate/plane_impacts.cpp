@@ -164,8 +164,13 @@ bool Impacts::predict(int i, Impact& impact, const std::vector<ContactBatch>& ba
   if (most(now_[a], now_[b]) + most(step.dv[a], step.dv[b]) < pair.impact_speed) return false;
   const ContactBatch& g = batches[pair.slot / kLanes];
   if (!may_meet(pair, g, step)) {
-    // what ends faster than it goes on the way: its row sees the end alone
-    if (most(step.dv[a], step.dv[b]) >= pair.impact_speed) passing_.push_back(i);
+    // what ends faster than it goes on the way: its row sees the end alone; and rows that turn see a way that
+    // is not gone
+    const double turns =
+        pair.material.elasticity > kBounces
+            ? step.pace.h * (std::fabs(now_[a].w) + std::fabs(now_[b].w)) * most(now_[a], now_[b])
+            : 0;
+    if (most(step.dv[a], step.dv[b]) + turns >= pair.impact_speed) passing_.push_back(i);
     return false;
   }
   if (!find_impact(pair, impact, g, step)) {
@@ -244,16 +249,31 @@ bool Impacts::resolve(Impact& impact, const std::vector<ContactBatch>& batches, 
   return true;
 }
 
-// whether a pair parts at a time, by the features that are nearest then
-bool Impacts::parts_at(const Pair& pair, double when, const ContactBatch& g, const Step& step) {
+// a pair at a time, by the features that are nearest then
+Impacts::PlacedPair Impacts::placed_by_nearest(const Pair& pair, double when, const ContactBatch& g,
+                                               const Step& step) {
   const int lane = pair.slot % kLanes;
   int words[2];
   features_at(pair, when, step, words);
   copy_lane(g, lane, fresh_, lane);
-  const PlacedPair at = placed_renewed(pair, words, when, step);
+  return placed_renewed(pair, words, when, step);
+}
+
+// whether a pair parts at a time, or does not come together again in what is left of the step
+bool Impacts::parts_at(const Pair& pair, double when, const ContactBatch& g, const Step& step) {
+  const PlacedPair at = placed_by_nearest(pair, when, g, step);
   for (int k = 0; k < pair.touches; ++k) {
-    if (at.rows[k].gap < kNowhere / 2 && !(normal_speed(at.rows[k], at.a, at.b) > 0)) return false;
+    const double vn = normal_speed(at.rows[k], at.a, at.b);
+    if (!(vn > 0) && !(at.rows[k].gap + (step.pace.h - when) * vn > 0)) return false;
   }
+  return true;
+}
+
+// whether it is apart
+bool Impacts::apart_at(const Pair& pair, double when, const ContactBatch& g, const Step& step) {
+  const PlacedPair at = placed_by_nearest(pair, when, g, step);
+  for (int k = 0; k < pair.touches; ++k)
+    if (!(at.rows[k].gap > 0)) return false;
   return true;
 }
 
@@ -286,10 +306,22 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
     }
     const double fast = swiftness(va, bounding_radius_[pair.a]) + swiftness(vb, bounding_radius_[b]);
     const bool struck = strikes(pair.a, b, va, vb, step);
-    if (!any && !struck) return;
     const auto in_middle = [&](int k) {
       return normal_speed(middle_row(g, lane, k, step.middle[pair.a], step.middle[b]), va, vb);
     };
+    // what bounces and has been found not to meet is not held by rows that turn into each other on the way
+    const auto would_push = [&](int k) {
+      return r.gap[k][lane] + step.pace.h * std::min(v[k], in_middle(k)) < 0;
+    };
+    if (met == 0 && pair.material.elasticity > kBounces &&
+        (would_push(0) || (pair.touches > 1 && would_push(1))) && apart_at(pair, step.pace.h, g, step)) {
+      for (int k = 0; k < pair.touches; ++k) {
+        g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
+        least_[group].n[k][lane] = kNoTarget;
+      }
+      return;
+    }
+    if (!any && !struck) return;
     if (struck) {
       for (int k = 0; k < 2; ++k) g.surface[k][lane] = g.belt[lane];
     }

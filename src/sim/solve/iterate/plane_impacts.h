@@ -124,6 +124,7 @@ class Impacts {
                        const Step& step) const;
   double closing_time(const Pair& pair, int k, const ContactBatch& batches, const PlacedPair& start,
                       const Step& step) const;
+  double most_bend(const Pair& pair, const Motion& va, const Motion& vb) const;
   bool may_meet(const Pair& pair, const ContactBatch& batches, const Step& step) const;
   double first_closing(const Pair& pair, const ContactBatch& batches, const PlacedPair& start,
                        const Step& step, int& which) const;
@@ -184,7 +185,9 @@ class Impacts {
     return v;
   }
   bool strikes(int a, int b, const Motion& va, const Motion& vb, const Step& step) const;
+  PlacedPair placed_by_nearest(const Pair& pair, double when, const ContactBatch& g, const Step& step);
   bool parts_at(const Pair& pair, double when, const ContactBatch& g, const Step& step);
+  bool apart_at(const Pair& pair, double when, const ContactBatch& g, const Step& step);
   void leave_to_iterations(std::vector<ContactBatch>& batches, const Step& step);
   const Rows& rows(int group, const std::vector<ContactBatch>& batches, const std::vector<Pose>& poses);
 
