@@ -142,6 +142,7 @@ std::string figure_svg(const Scene& scene, const std::vector<double>& at, const 
 
 Sweep sweep(const Scene& scene, const std::vector<std::string>& vary, const std::vector<std::string>& measure,
             int jobs) {
+  if (jobs < 0) throw UsageError(fmt::format("jobs {}: expected 0 (all cores) or more", jobs));
   return guarded([&] {
     const scene::Scene& base = scene.inside().scene;
     const app::Variations all(vary);

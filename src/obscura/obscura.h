@@ -337,7 +337,8 @@ class World {
   State save() const;
   /// Goes back, or on, to a state that was saved of a world of the same scene: it goes on to the same bits. A
   /// state of a scene with other values (a mass, the gravity) goes on by this one's. Throws UsageError for a
-  /// state of another make: of other bodies, joints or conditions.
+  /// state of another make: of other bodies, joints or conditions, or of another physics.rate, by whose steps
+  /// time is counted.
   void restore(const State& state);
   /// Equal exactly when states are: 32 hexadecimal digits, as `obscura states` prints them.
   std::string hash() const;

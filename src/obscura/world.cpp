@@ -42,6 +42,7 @@ World::Inside::Inside(const Scene& of, int threads) : scene(of) {
   }
   if (trail > 0) run->track(std::move(trailed));
   run->heed(app::interrupted);
+  run->keep_whole_steps();
   columns = app::columns(run->scene_info(), its.axes);
 }
 
@@ -249,12 +250,23 @@ std::vector<Event> World::events() const {
 
 State World::save() const {
   const Work here = inside().work();
-  return {inside().run->saved()};
+  State state{inside().run->saved()};
+  const sim::Rational rate = inside().run->rate();
+  // its time is a number of steps
+  for (const std::int64_t each : {rate.num, rate.den}) state.words.push_back(std::uint64_t(each));
+  return state;
 }
 
 void World::restore(const State& state) {
   const Work here = inside().work();
-  if (!inside().run->restore(state.words))
+  const std::span<const std::uint64_t> words = state.words;
+  if (words.size() < 2) throw UsageError("restore: this is no state of a world");
+  const sim::Rational rate = inside().run->rate(),
+                      saved{std::int64_t(words[words.size() - 2]), std::int64_t(words.back())};
+  if (saved.num != rate.num || saved.den != rate.den)
+    throw UsageError(fmt::format("restore: it was saved at physics.rate = {}, and this world has {}",
+                                 sim::text(saved), sim::text(rate)));
+  if (!inside().run->restore(words.first(words.size() - 2)))
     throw UsageError("restore: this is no state of a world of this scene");
   if (inside().trail > 0) (void)inside().run->take_track();
   inside().ways.clear();

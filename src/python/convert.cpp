@@ -27,6 +27,23 @@ bool overtaken() { return ending && std::this_thread::get_id() != ends; }
   for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
+// act(), with where it was in what it throws: "ball" and "[3].mass: ..." are "ball[3].mass: ..."
+template <class Act>
+void told_at(const std::string& where, Act&& act) {
+  const auto at = [&](const std::exception& error) {
+    const std::string what = error.what();
+    if (what.starts_with("[")) return where + what;
+    return where + (what.find(": ") == std::string::npos ? ": " : ".") + what;
+  };
+  try {
+    act();
+  } catch (const py::type_error& error) {
+    throw py::type_error(at(error));
+  } catch (const py::value_error& error) {
+    throw py::value_error(at(error));
+  }
+}
+
 }  // namespace
 
 Value value(py::handle from, int depth) {
@@ -47,7 +64,8 @@ Value value(py::handle from, int depth) {
   if (py::hasattr(from, "keys")) return table(from, depth + 1);
   if (py::isinstance<py::sequence>(from)) {
     Value::List list;
-    for (const py::handle each : from) list.push_back(value(each, depth + 1));
+    for (const py::handle each : from)
+      told_at("[" + std::to_string(list.size()) + "]", [&] { list.push_back(value(each, depth + 1)); });
     return list;
   }
   throw py::type_error("a scene has numbers, words, lists and tables, not " +
@@ -58,17 +76,7 @@ Table table(py::handle from, int depth) {
   Table table;
   for (const py::handle key : from.attr("keys")()) {
     const std::string name = py::str(key).cast<std::string>();
-    const auto at = [&](const std::exception& error) {
-      const std::string what = error.what();
-      return name + (what.find(": ") == std::string::npos ? ": " : ".") + what;
-    };
-    try {
-      table.emplace_back(name, value(from[key], depth));
-    } catch (const py::type_error& error) {
-      throw py::type_error(at(error));
-    } catch (const py::value_error& error) {
-      throw py::value_error(at(error));
-    }
+    told_at(name, [&] { table.emplace_back(name, value(from[key], depth)); });
   }
   return table;
 }

@@ -30,7 +30,7 @@ struct StageView {
   Array positions, velocities, spins, orientations, forces, torques;
 };
 
-// adds the answer of a force, if it returns one: forces, or forces and torques
+// adds the answer of a force, if it returns one, forces or forces and torques, and not what it has filled
 void add(const py::handle answer, Array& to, const char* what) {
   const Array given = Array::ensure(answer);
   if (!given)
@@ -43,7 +43,21 @@ void add(const py::handle answer, Array& to, const char* what) {
   if (given.ndim() > 1 && shape(given) != shape(to))
     throw py::value_error(std::string("a force returned ") + what + " of " + shape(given) + ", expected " +
                           shape(to) + ": a row a body");
+  if (py::isinstance<py::array>(answer)) {
+    const auto* const its = static_cast<const double*>(py::reinterpret_borrow<py::array>(answer).data());
+    if (its >= to.data() && its < to.data() + to.size()) return;
+  }
   for (py::ssize_t i = 0; i < to.size(); ++i) to.mutable_data()[i] += given.data()[i];
+}
+
+// `stage.forces += f` sets what it has changed in place
+template <Array StageView::*Of>
+void set(StageView& stage, const Array& to) {
+  Array& its = stage.*Of;
+  if (to.data() == its.data()) return;
+  if (to.size() != its.size() || (to.ndim() > 1 && shape(to) != shape(its)))
+    throw py::value_error("an array of " + shape(to) + ", expected " + shape(its) + ": a row a body");
+  std::memcpy(its.mutable_data(), to.data(), std::size_t(its.nbytes()));
 }
 
 // The function of Python behind a force; it may be let go in any thread.
@@ -55,6 +69,17 @@ struct Callable {
           delete it;
         }) {}
   std::shared_ptr<py::function> function;
+
+  py::object called(const StageView& view) const {
+    try {
+      return (*function)(view);
+    } catch (py::error_already_set& error) {
+      // it would end the loop over frames in which the force is called
+      if (!error.matches(PyExc_StopIteration)) throw;
+      py::raise_from(error, PyExc_RuntimeError, "a force raised StopIteration");
+      throw py::error_already_set();
+    }
+  }
 
   void operator()(const Stage& stage, const Push& push) const {
     const py::gil_scoped_acquire locked;
@@ -73,10 +98,10 @@ struct Callable {
     std::memset(view.forces.mutable_data(), 0, std::size_t(view.forces.nbytes()));
     std::memset(view.torques.mutable_data(), 0, std::size_t(view.torques.nbytes()));
     Array forces = view.forces, torques = view.torques;
-    const py::object answer = (*function)(view);
+    const py::object answer = called(view);
     if (py::isinstance<py::tuple>(answer) && py::len(answer) == 2) {
       add(answer[py::int_(0)], forces, "forces"), add(answer[py::int_(1)], torques, "torques");
-    } else if (!answer.is_none() && !answer.is(forces)) {
+    } else if (!answer.is_none()) {
       add(answer, forces, "forces");
     }
     std::memcpy(push.forces, forces.data(), std::size_t(forces.nbytes()));
@@ -94,8 +119,12 @@ void add_scene(py::module_& module) {
       .def_readonly("spins", &StageView::spins, "rad/s: a number a body, in space a row.")
       .def_readonly("orientations", &StageView::orientations,
                     "Matrices that turn a body's axes into the room's: orientations[i] @ local.")
-      .def_readonly("forces", &StageView::forces, "What the force fills, N: a row a body, all zero before.")
-      .def_readonly("torques", &StageView::torques, "Likewise, N m about the centres of mass.");
+      .def_property(
+          "forces", [](const StageView& it) { return it.forces; }, &set<&StageView::forces>,
+          "What the force fills, N: a row a body, all zero before.")
+      .def_property(
+          "torques", [](const StageView& it) { return it.torques; }, &set<&StageView::torques>,
+          "Likewise, N m about the centres of mass.");
 
   py::class_<Body>(module, "Body", "One body of a scene.")
       .def_readonly("name", &Body::name)

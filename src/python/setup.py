@@ -11,7 +11,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pybind11
+try:
+    import pybind11
+except ModuleNotFoundError:
+    sys.exit(f"obscura: {sys.executable} has no pybind11: take the Python that has, Debian's /usr/bin/python3 with "
+             "python3-pybind11 and python3-numpy, as docs/python.md says")
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -344,6 +345,44 @@ TEST(World, TakesAStateOfOtherValuesButNotOfAnotherMake) {
   EXPECT_EQ(heavy.steps(), 10);
   EXPECT_EQ(heavy.positions()(0, 1), world.positions()(0, 1));
   EXPECT_THROW(two.restore(world.save()), UsageError);
+  World other_rate(one.with("physics.rate", 250));
+  try {
+    other_rate.restore(world.save());  // 10 steps would be another time
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("saved at physics.rate = 100, and this world has 250"));
+  }
+}
+
+TEST(World, RefusesAVelocityWhoseStateItWouldRefuse) {
+  World world(balls(1, 100));
+  const auto set = [&](double v) { world.set_velocities(std::array{v, 0.0}); };
+  set(1e5);
+  world.restore(world.save());
+  EXPECT_THROW(set(1e9), UsageError);
+  EXPECT_EQ(world.velocities()(0, 0), 1e5);
+}
+
+TEST(World, StandsWhereTheLastWholeStepLeftItWhenItsRunEnds) {
+  const Scene scene = Scene::parse(
+      "[room]\nsize = [4, 3]\nwalls = 'none'\n[physics]\nrate = 60\nintegrator = 'euler'\n"
+      "[[particle]]\nname = 'p'\nposition = [1, 1]\n[[spring]]\nbetween = [[2, 1], 'p']\nstiffness = 1e7\n",
+      "stiff.toml");
+  World world(scene);
+  std::string hash = world.hash();
+  double time = 0, x = world.positions()(0, 0);
+  try {
+    for (int i = 0; i < 1000; ++i) {
+      world.step();
+      hash = world.hash(), time = world.time(), x = world.positions()(0, 0);
+    }
+    FAIL();
+  } catch (const RunError&) {
+  }
+  EXPECT_GT(time, 0);
+  EXPECT_EQ(world.time(), time);
+  EXPECT_EQ(world.positions()(0, 0), x);
+  EXPECT_EQ(world.hash(), hash);
 }
 
 TEST(World, OfTheInterruptedCanGoOn) {

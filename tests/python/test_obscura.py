@@ -116,6 +116,33 @@ def test_keys_are_attributes_and_wrong_ones_are_named():
     assert len(scene.bodies) == 1
 
 
+def test_a_table_or_an_array_changed_in_place_changes_the_scene():
+    scene = room(constants={"k": 1}, force=[{"components": ["k", 0]}])
+    scene.constants["k"] = 5
+    assert scene.constants == {"k": 5}
+    world = scene.world()
+    world.step_to(1)
+    assert abs(world.velocities[0, 0] - 2.5) < 1e-9
+    scene.constants.update(k=7, other=[1, 2])
+    scene.constants["other"][0] = 3
+    assert scene.constants == {"k": 7, "other": [3, 2]} and copy.deepcopy(scene.constants) == scene.constants
+    scene.ball[0].velocity = np.array([1.0, 0.0])
+    scene.ball[0].velocity[0] = 3
+    assert scene.ball[0].velocity == [3, 0]
+    scene.film.speed = [{"time": 0}, {"time": 1, "speed": 0.5}]
+    before = obscura._obscura.toml(scene._data)
+    scene.film.speed[1]["speed"] = 0.1
+    assert obscura._obscura.toml(scene._data) != before
+
+
+def test_what_was_given_may_be_changed_afterwards():
+    scene, v = room(), [0.0, 0.0]
+    for i in range(3):
+        v[0] = float(i)
+        scene.ball.add(radius=0.1, position=[1, 1 + i / 2], velocity=v)
+    assert [ball.velocity[0] for ball in list(scene.ball)[1:]] == [0, 1, 2]
+
+
 def test_a_list_changed_in_place_changes_the_scene():
     for scene in (room(), obscura.Scene.parse(room().text)):
         before = scene.hash
@@ -354,6 +381,66 @@ def test_a_force_may_fill_its_arrays_and_give_torques():
     world = scene.world()
     world.step_to(1)
     assert abs(world.spins[0] - 1) < 1e-9 and abs(world.velocities[0, 0] - 1) < 1e-9
+
+
+@pytest.mark.parametrize("answer", [
+    lambda stage: None,
+    lambda stage: stage.forces,
+    lambda stage: stage.forces[:],
+    lambda stage: (stage.forces, stage.torques),
+    lambda stage: (stage.forces[::1], np.asarray(stage.torques)),
+    lambda stage: (stage.forces, np.zeros(1)),
+])
+def test_what_a_force_fills_and_returns_counts_once(answer):
+    scene = obscura.Scene({"room": {"size": [4, 4], "walls": "none", "gravity": [0, 0]},
+                           "box": [{"name": "box", "size": [1, 1], "mass": 6, "position": [2, 2]}]})
+
+    def push(stage):
+        stage.forces[:, 0], stage.torques[:] = 6, 1
+        return answer(stage)
+
+    scene.add_force(push)
+    world = scene.world()
+    world.step_to(1)
+    assert abs(world.spins[0] - 1) < 1e-9 and abs(world.velocities[0, 0] - 1) < 1e-9
+
+
+def test_a_force_may_add_to_its_arrays():
+    scene = room()
+
+    def push(stage):
+        stage.forces += [4, 0]
+        stage.forces += [2, 0]
+
+    scene.add_force(push)
+    world = scene.world()
+    world.step_to(1)
+    assert abs(world.velocities[0, 0] - 3) < 1e-9
+    scene.add_force(lambda stage: setattr(stage, "forces", np.ones(3)), "wrong")
+    with pytest.raises(ValueError, match="an array of 3, expected 1 x 2"):
+        scene.world().step()
+
+
+def test_what_a_world_runs_is_not_changed_by_its_scene():
+    world = room().world()
+    world.scene.room.gravity = [0, -1]
+    assert world.scene.room.gravity == [0, 0] and copy.copy(world).scene.room.gravity == [0, 0]
+
+
+def test_a_figure_that_cannot_be_written_leaves_the_old_one(tmp_path):
+    figure = obscura.Figure("<svg/>")
+    figure.save(tmp_path / "a.svg")
+    assert (tmp_path / "a.svg").read_text() == "<svg/>" and os.listdir(tmp_path) == ["a.svg"]
+    with pytest.raises(obscura.FileError, match="there/a.svg"):
+        figure.save(tmp_path / "there" / "a.svg")
+
+
+def test_a_force_that_runs_out_of_values_does_not_end_the_film():
+    scene, values = room(), iter([1.0] * 50)
+    scene.add_force(lambda stage: np.full((1, 2), next(values)), "controls")
+    with pytest.raises(RuntimeError, match="StopIteration"):
+        for _ in scene.frames(**SMALL):
+            pass
 
 
 def test_what_a_force_raises_comes_out_and_the_step_is_not_taken():

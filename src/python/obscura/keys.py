@@ -18,35 +18,68 @@ def schema() -> dict:
     return json.loads(_obscura.schema())
 
 
-class Items(list):
-    """A list of a scene: what changes it, or a list within it, changes the scene."""
+def plain(value: Any) -> Any:
+    """A value of its own: what its giver does with it later changes nothing. Arrays become lists."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, dict):
+        return {key: plain(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(each) for each in value]
+    return value
 
-    def __init__(self, values, changed):
-        super().__init__(Items(value, self._tell) if isinstance(value, list) else value for value in values)
-        self._changed = changed
+
+class Told:
+    """What a list or a table of a scene has beside Python's: what changes it changes the scene."""
 
     def _tell(self) -> None:
         self._changed()
 
-    def plain(self) -> list:
-        return [value.plain() if isinstance(value, Items) else value for value in self]
+    def _within(self, value: Any) -> Any:
+        if isinstance(value, Told):
+            return value
+        if isinstance(value, list):
+            return Items(value, self._tell)
+        return Entries(value, self._tell) if isinstance(value, dict) else value
 
     def __reduce__(self):
-        return list, (self.plain(),)
+        return type(self).__mro__[2], (plain(self),)
 
-    def __deepcopy__(self, memo) -> list:
-        return copy.deepcopy(self.plain(), memo)
+    def __deepcopy__(self, memo):
+        return copy.deepcopy(plain(self), memo)
 
 
-def _telling(name: str):
-    of_list = getattr(list, name)
+class Items(Told, list):
+    """A list of a scene: what changes it, or what is in it, changes the scene."""
 
-    @functools.wraps(of_list)
-    def change(self, *arguments, **options):
-        answer = of_list(self, *arguments, **options)
+    def __init__(self, values, changed):
+        self._changed = changed
+        list.__init__(self, (self._within(value) for value in values))
+
+    def _wrap(self) -> None:
         for i, value in enumerate(self):
-            if isinstance(value, list) and not isinstance(value, Items):
-                list.__setitem__(self, i, Items(value, self._tell))
+            list.__setitem__(self, i, self._within(value))
+
+
+class Entries(Told, dict):
+    """A table of a scene with keys of its user's, as constants: what changes it changes the scene."""
+
+    def __init__(self, values, changed):
+        self._changed = changed
+        dict.__init__(self, {key: self._within(value) for key, value in values.items()})
+
+    def _wrap(self) -> None:
+        for key, value in self.items():
+            dict.__setitem__(self, key, self._within(value))
+
+
+def _telling(of: type, name: str):
+    change_of = getattr(of, name)
+
+    @functools.wraps(change_of)
+    def change(self, *arguments, **options):
+        answer = change_of(self, *arguments, **options)
+        self._wrap()
         self._tell()
         return answer
 
@@ -55,7 +88,9 @@ def _telling(name: str):
 
 for _name in ("__setitem__", "__delitem__", "__iadd__", "__imul__", "append", "extend", "insert", "pop", "remove",
               "clear", "sort", "reverse"):
-    setattr(Items, _name, _telling(_name))
+    setattr(Items, _name, _telling(list, _name))
+for _name in ("__setitem__", "__delitem__", "__ior__", "pop", "popitem", "clear", "update", "setdefault"):
+    setattr(Entries, _name, _telling(dict, _name))
 
 
 class Section:
@@ -80,14 +115,14 @@ class Section:
         if properties(node) and not isinstance(self._data.get(name, {}), list):
             return Section(path, _Late(self._data, name), properties(node), self._touch)
         value = self._data[name] if name in self._data else node.get("default")
-        if not isinstance(value, list):
+        if not isinstance(value, (list, dict)):
             return value
-        items = Items(value, lambda: setattr(self, name, items.plain()))
-        return items
+        told = (Items if isinstance(value, list) else Entries)(value, lambda: setattr(self, name, told))
+        return told
 
     def __setattr__(self, name: str, value: Any) -> None:
         self._key(name)
-        self._data[name] = value.plain() if isinstance(value, Items) else value
+        self._data[name] = plain(value)
         self._touch()
 
     def __delattr__(self, name: str) -> None:
@@ -163,7 +198,7 @@ class Kind:
         section = Section(self._path, {}, self._keys, lambda: None)
         for name in keys:
             section._key(name)
-        self._owner[self._name] = [*self._list(), keys]
+        self._owner[self._name] = [*self._list(), plain(keys)]
         self._touch()
         return self[-1]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import contextlib
 import copy
 import difflib
 import html
@@ -13,8 +14,8 @@ from typing import Any, Callable, Iterable, Mapping, Sequence
 import numpy
 
 from . import _obscura
-from .errors import SceneError, UsageError
-from .keys import Section, schema
+from .errors import FileError, SceneError, UsageError
+from .keys import Section, plain, schema
 
 
 class Figure:
@@ -26,8 +27,16 @@ class Figure:
     def save(self, path: str | os.PathLike) -> None:
         if not os.fspath(path).endswith(".svg"):
             raise UsageError(f"{os.fspath(path)}: a figure is an SVG, name.svg")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(self.svg)
+        # under its name once it is whole
+        part = os.fspath(path) + ".part"
+        try:
+            with open(part, "w", encoding="utf-8") as file:
+                file.write(self.svg)
+            os.replace(part, path)
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                os.unlink(part)
+            raise FileError(f"{os.fspath(path)}: {error.strerror}") from None
 
     def _repr_html_(self) -> str:
         # as a picture of its own, whose fonts and styles are not the page's
@@ -55,7 +64,7 @@ class Scene(Section):
             data = {**(dict(source) if source else {}), **keys}
             if sets:
                 raise TypeError("'sets' go over the keys of a file or a text")
-            self._begin(("keys", name or "scene"), copy.deepcopy(data))
+            self._begin(("keys", name or "scene"), plain(data))
         else:
             if keys:
                 raise TypeError("a scene is a file or keys, not both: set keys after it is read")
@@ -300,8 +309,8 @@ class World(_obscura.World):
 
     @property
     def scene(self) -> Scene:
-        """What it runs, as that was when the world was made."""
-        return self._scene
+        """What it runs, as that was when the world was made: a copy."""
+        return self._scene.copy()
 
     def __setattr__(self, name: str, value: Any) -> None:
         if not isinstance(getattr(type(self), name, None), property):
@@ -313,7 +322,7 @@ class World(_obscura.World):
         return _world, (self._scene, self.save(), self._threads)
 
     def __repr__(self) -> str:
-        return f"<World {self.scene.name} at {self.time:g} s>"
+        return f"<World {self._scene.name} at {self.time:g} s>"
 
 
 def _world(scene: Scene, state, threads: int = 1) -> World:

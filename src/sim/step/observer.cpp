@@ -38,6 +38,7 @@ class SeenFrom final : public Run {
   Rational rate() const override { return run_->rate(); }
   std::variant<std::monostate, Trouble, Stopped> go(std::int64_t step) override { return run_->go(step); }
   void heed(std::function<bool()> stop) override { run_->heed(std::move(stop)); }
+  void keep_whole_steps() override { run_->keep_whole_steps(); }
   void show_divergence() override { run_->show_divergence(); }
   std::optional<Divergence> divergence() const override { return run_->divergence(); }
   std::vector<std::uint64_t> saved() const override { return run_->saved(); }

@@ -34,6 +34,7 @@ class RunOf final : public Run {
     else
       stepper_->begin(state_);
     for (const Force<D>& force : model_.forces) called_ = called_ || force.law == Force<D>::Law::function;
+    keeps_ = called_;
     stride_ = std::max<std::int64_t>(1, std::llround(value(model_.rate) / kTrackRate));
     iterates_ = model_.collision != Collision::handout && !solver_kind(solver(model_)).exact;
     jointed_.assign(model_.bodies.size(), 0);
@@ -81,21 +82,23 @@ class RunOf final : public Run {
     between_ = false;
     while (!trouble_ && state_.step < step) {
       if (stop_ && stop_()) return Stopped{};
-      if (shown_ || called_) last_ = state_;
+      if (shown_ || keeps_) last_ = state_;
       try {
         trouble_ = guarded([&] { return stepper_->step(state_); });
       } catch (...) {
-        if (called_) state_ = last_;
+        if (keeps_) state_ = last_;
         throw;
       }
       // what comes after a whole step is too much energy, in finite numbers
       if (shown_ && trouble_ && state_.step > last_.step) trouble_.reset();
-      if (trouble_ && shown_) state_ = last_;
+      if (trouble_ && (shown_ || keeps_)) state_ = last_;
       if (!trouble_) keep_ways();
     }
     if (trouble_) return *trouble_;
     return std::monostate{};
   }
+
+  void keep_whole_steps() override { keeps_ = true; }
 
   /// Whether it had a state to begin with.
   bool sound() const { return sound_; }
@@ -301,6 +304,7 @@ class RunOf final : public Run {
   State<D> state_, copy_, last_;  // last_: before the step, where divergence is shown or programs are called
   std::optional<Stepper<D>> stepper_;
   bool called_ = false;  // a force is a program's
+  bool keeps_ = false;   // what fails leaves the last whole step
   bool sound_ = true;
   SceneInfo cast_;
   std::optional<Trouble> trouble_;
@@ -329,9 +333,11 @@ std::string RunOf<D>::set(const NewBodyColumns& columns) {
        {wrong_size(columns.x, state_.x, "positions"), wrong_size(columns.v, state_.v, "velocities"),
         wrong_size(columns.turn, state_.turn, "turns"), wrong_size(columns.spin, state_.spin, "spins")})
     if (!why.empty()) return why;
-  for (const std::span<const double> each : {columns.x, columns.v, columns.turn, columns.spin})
-    if (!std::all_of(each.begin(), each.end(), [](double x) { return std::isfinite(x); }))
-      return "a number is not finite";
+  for (const auto& [what, all] : {std::pair("positions", columns.x), std::pair("velocities", columns.v),
+                                  std::pair("turns", columns.turn), std::pair("spins", columns.spin)})
+    if (const auto at = std::find_if(all.begin(), all.end(), [](double x) { return !std::isfinite(x); });
+        at != all.end())
+      return "number " + std::to_string(at - all.begin()) + " of the " + what + " is not finite";
   if (!model_.bonds.empty()) return "bodies with bonds move together: only a saved state can be restored";
 
   State<D> next = state_;
@@ -356,7 +362,8 @@ std::string RunOf<D>::set(const NewBodyColumns& columns) {
       return body.name + " is fixed: it has no velocity and no spin";
     if (D == 2 || k < 0) continue;
     Orientation<D>& turn = next.turn[std::size_t(k)];
-    if (!(turn.squaredNorm() > 0)) return "the turn of " + body.name + " is no quaternion";
+    if (!(turn.squaredNorm() > 0) || !std::isfinite(turn.squaredNorm()))
+      return "the turn of " + body.name + " is no quaternion";
     // a unit quaternion stays as it is, to the bit
     if (std::fabs(turn.squaredNorm() - 1) > 1e-14) turn /= std::sqrt(turn.squaredNorm());
   }
@@ -365,6 +372,8 @@ std::string RunOf<D>::set(const NewBodyColumns& columns) {
   next.contacts.clear(), next.touches.clear();
   std::fill(next.frozen.begin(), next.frozen.end(), 0);
   std::fill(next.quiet.begin(), next.quiet.end(), 0.0);
+  if (!stepper_->fits(next))
+    return "a body would be farther, or faster, than a million room heights, or those a second";
   state_ = next;
   stepper_.emplace(model_);
   stepper_->begin_anew(state_, time({state_.step, 0}, model_.rate));

@@ -75,6 +75,9 @@ class Run {
   /// From now on, `stop` is asked before every step whether to stop there.
   virtual void heed(std::function<bool()> stop) = 0;
 
+  /// From now on, trouble leaves the run where its last whole step was, for those who go on to read it.
+  virtual void keep_whole_steps() = 0;
+
   /// From now on, a run that diverges is shown: it goes on for as long as its state is finite, and every
   /// later instant is that of the last finite step.
   virtual void show_divergence() = 0;
@@ -116,6 +119,7 @@ class Run {
 /// diverges in it.
 class RunWithoutSteps : public Run {
  public:
+  void keep_whole_steps() final {}
   void show_divergence() final {}
   std::optional<Divergence> divergence() const final { return {}; }
   std::vector<std::uint64_t> saved() const final { return {}; }

@@ -16,9 +16,6 @@
 
 namespace obscura::sim::plane {
 
-/// e: what rises by a hundredth of its fall at most goes pair after pair, and its rows hold it after a blow.
-inline constexpr double kBounces = 0.1;
-
 /// Impacts: contact points that close within a substep faster than the resting speed. Newton's law with
 /// Coulomb friction, normals and friction of a pair together; pairs in the order of time, each at its own
 /// time and at the poses of that time, until none approaches. What meets in one instant is solved together,

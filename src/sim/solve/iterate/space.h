@@ -198,6 +198,7 @@ class SpaceIterative final : public Iterative<3> {
                        Flown* own = nullptr) const;
   bool meets_by_nearest(int touch, double when, double h, std::vector<ContactCandidate<D>>& gaps,
                         Flown* own) const;
+  bool parts_at(int a, int b, double t, double h);
   bool features_change(const ContactConstraint& touch) const;
   void renew_features(int first, double low, double high, double h);
   void begin_flights(const State<D>& state, double h);

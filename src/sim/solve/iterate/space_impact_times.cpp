@@ -242,6 +242,18 @@ double SpaceIterative::find_features(int a, int b, double t, double h, std::vect
   return least;
 }
 
+// whether a pair parts at a time, or does not come together again in what is left of the step
+bool SpaceIterative::parts_at(int a, int b, double t, double h) {
+  find_features(a, b, t, h, gaps_);
+  const BodyMotion<D>&at_a = flown(a, t, h).stance, &at_b = flown(b, t, h).stance;
+  return std::all_of(gaps_.begin(), gaps_.end(), [&](const ContactCandidate<D>& gap) {
+    const EvaluatedContact<D> now = evaluate(gap, at_a, at_b);
+    const double speed =
+        now.normal.dot(at_a.velocity(now.point - at_a.x) - at_b.velocity(now.point - at_b.x));
+    return speed > 0 || now.value + (h - t) * speed > 0;
+  });
+}
+
 // whether other features of a pair may come nearer while they turn
 bool SpaceIterative::features_change(const ContactConstraint& touch) const {
   const auto is_round = [&](int body) { return bool(round_radius(model_.bodies[body].shape)); };

@@ -64,6 +64,8 @@ inline constexpr double kLasting = 0.05;
 /// What closes slower than so many times what the free motion makes it close within the substep does so by
 /// that, and strikes nothing.
 inline constexpr double kRestingGains = 2;
+/// e: what rises by a hundredth of its fall at most goes pair after pair, and its rows hold it after a blow.
+inline constexpr double kBounces = 0.1;
 /// rad: what turns farther in a substep does so without its rows.
 inline constexpr double kMostTurn = 1;
 /// What changes how fast two pass each other by more than this, of how fast both are, is a blow: how their
