@@ -17,9 +17,18 @@ namespace {
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
+// Zeros whose memory a capsule owns: NumPy's resize(), which would move what the run reads, refuses such.
+Array zeros(std::vector<py::ssize_t> shape) {
+  std::size_t size = 1;
+  for (const py::ssize_t each : shape) size *= std::size_t(each);
+  auto* const memory = new double[size]();
+  const py::capsule owner(memory, [](void* its) { delete[] static_cast<double*>(its); });
+  return Array(std::move(shape), memory, owner);
+}
+
 // an array of its own: what Python keeps of a stage stays what it was
 Array copied(const Columns& of, std::vector<py::ssize_t> shape) {
-  Array array(std::move(shape));
+  Array array = zeros(std::move(shape));
   std::memcpy(array.mutable_data(), of.first, of.size() * sizeof(double));
   return array;
 }
@@ -93,10 +102,8 @@ struct Callable {
                    copied(stage.velocities, {n, d}),
                    copied(stage.spins, rows(spins)),
                    copied(stage.orientations, {n, d, d}),
-                   Array(rows(d)),
-                   Array(rows(spins))};
-    std::memset(view.forces.mutable_data(), 0, std::size_t(view.forces.nbytes()));
-    std::memset(view.torques.mutable_data(), 0, std::size_t(view.torques.nbytes()));
+                   zeros(rows(d)),
+                   zeros(rows(spins))};
     Array forces = view.forces, torques = view.torques;
     const py::object answer = called(view);
     if (py::isinstance<py::tuple>(answer) && py::len(answer) == 2) {

@@ -421,6 +421,13 @@ def test_a_force_may_add_to_its_arrays():
         scene.world().step()
 
 
+def test_the_arrays_of_a_stage_cannot_be_moved():
+    scene = room()
+    scene.add_force(lambda stage: stage.forces.resize((10000, 2), refcheck=False), "moves")
+    with pytest.raises(ValueError, match="own"):
+        scene.world().step()
+
+
 def test_what_a_world_runs_is_not_changed_by_its_scene():
     world = room().world()
     world.scene.room.gravity = [0, -1]
