@@ -140,23 +140,14 @@ std::optional<Trouble> DivergenceMonitor<D>::check_energy(const State<D>& state,
 template <int D>
 std::optional<Trouble> DivergenceMonitor<D>::check_joints(const State<D>& state, double t) const {
   if (model_.joints.empty()) return {};
-  static const BodyMotion<D> room;
   at_.resize(model_.bodies.size());
   for (std::size_t body = 0; body < at_.size(); ++body) at_[body] = body_motion(state, int(body));
-  const auto side = [&](int body) -> const BodyMotion<D>& {
-    return body < 0 ? room : at_[std::size_t(body)];
-  };
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     const Joint<D>& joint = model_.joints[i];
     if (joint.linked || (i < state.broken.size() && state.broken[i])) continue;
-    const AngularVec<D> turn = joint.turn_between([&](int body) {
-      const int k = body < 0 ? -1 : turning(state, body);
-      return k < 0 ? AngularVec<D>(AngularVec<D>::Zero())
-                   : AngularVec<D>(rounds<D>(state.turn[std::size_t(k)]));
-    });
     Row<D> J[kMostHeld<D>];
     double off[kMostHeld<D>];
-    const int n = rows(joint, side(joint.a.body), side(joint.b.body), {turn, wound(state, i)}, J, off, at_);
+    const int n = rows<D>(joint, i, state, at_, J, off);
     double size = joint.length;
     joint.each_body([&](int body) {
       if (body >= 0) size = std::max(size, bounding_radius(model_.bodies[std::size_t(body)].shape));

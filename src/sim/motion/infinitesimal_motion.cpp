@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "sim/constraint/joints/joint.h"
+#include "sim/math/full_rank.h"
 #include "sim/math/islands.h"
 #include "sim/motion/stability.h"
 
@@ -26,6 +27,7 @@ namespace {
 
 constexpr int kMostLinkageRows = 400;
 constexpr double kOfRankNone = 1e-12;  // of the largest: eigenvalues of rows of unit length
+constexpr double kMayDepend = 1e-9;    // of the largest: pivots of what may have such eigenvalues
 constexpr double kOneSign = 1e-6;      // of the largest: eigenvalues that are none of the other sign
 constexpr double kBends = 1e-6;        // of v^2 / L: less is no bend
 constexpr double kShortest = 1e-9;     // of the room: an arm
@@ -76,7 +78,11 @@ class Linkage {
       size[r] = J.row(r).norm();
       if (size[r] > 0) J.row(r) /= size[r];
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> forces(J * J.transpose()), ways(J.transpose() * J);
+    const Eigen::MatrixXd K = J * J.transpose();
+    FullRank rank;
+    rank.symmetric({K.data(), std::size_t(K.size())}, rows_, kMayDepend);
+    if (rank.rank() == rows_) return {-1, 0};
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> forces(K), ways(J.transpose() * J);
     const double zero = kOfRankNone * std::max(1.0, forces.eigenvalues()[rows_ - 1]);
     const auto zeros = [&](const auto& solver) {
       return int((solver.eigenvalues().array() <= zero).count());
@@ -109,19 +115,8 @@ class Linkage {
 
   // the rows of a joint at the velocities that bodies have
   int rows_of(int number, Row<D>* its) const {
-    static const BodyMotion<D> room;
-    const Joint<D>& joint = model_.joints[std::size_t(number)];
-    const auto side = [&](int body) -> const BodyMotion<D>& {
-      return body < 0 ? room : at_[std::size_t(body)];
-    };
-    const AngularVec<D> turn = joint.turn_between([&](int body) {
-      const int k = body < 0 ? -1 : turning(state_, body);
-      return k < 0 ? AngularVec<D>(AngularVec<D>::Zero())
-                   : AngularVec<D>(rounds<D>(state_.turn[std::size_t(k)]));
-    });
     double off[kMostHeld<D>];
-    return sim::rows(joint, side(joint.a.body), side(joint.b.body),
-                     {turn, wound(state_, std::size_t(number))}, its, off, at_);
+    return sim::rows<D>(model_.joints[std::size_t(number)], std::size_t(number), state_, at_, its, off);
   }
 
   // what a row has of a body whose velocities are in units of sqrt(2 J)
@@ -285,13 +280,12 @@ std::vector<Trouble> found(const Model<D>& model, const State<D>& state) {
     if (linkage.rows() > kMostLinkageRows) continue;
     const auto [body, count] = linkage.held_straight();
     if (body < 0) continue;
-    std::string who = named(model, body);
-    if (count > 1) who += " and " + std::to_string(count - 1) + (count > 2 ? " others" : " other");
-    all.push_back(
-        {0, named(model, body), "joints", "hold it straight",
-         "the joints of " + who +
-             " hold them straight, and no finite force bears what acts across that: give them slack, "
-             "or make one of them a spring"});
+    std::string bodies = named(model, body);
+    if (count > 1) bodies += " and " + std::to_string(count - 1) + (count > 2 ? " others" : " other");
+    all.push_back({0, named(model, body), "joints", "hold it straight",
+                   "the joints of " + bodies + " hold " + (count > 1 ? "them" : "it") +
+                       " straight, and no finite force bears a load across that: give them slack, or put a "
+                       "spring in place of one"});
   }
   return all;
 }

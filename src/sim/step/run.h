@@ -75,7 +75,7 @@ class Run {
   /// From now on, `stop` is asked before every step whether to stop there.
   virtual void heed(std::function<bool()> stop) = 0;
 
-  /// From now on, trouble leaves the run where its last whole step was, for those who go on to read it.
+  /// From now on, trouble leaves the state as it was after the last whole step, so that it can still be read.
   virtual void keep_whole_steps() = 0;
 
   /// From now on, a run that diverges is shown: it goes on for as long as its state is finite, and every

@@ -42,6 +42,19 @@ int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
 }
 
 template <int D>
+int rows(const Joint<D>& joint, std::size_t number, const State<D>& state,
+         std::type_identity_t<std::span<const BodyMotion<D>>> at, Row<D>* out, double* off) {
+  static const BodyMotion<D> room;
+  const auto side = [&](int body) -> const BodyMotion<D>& { return body < 0 ? room : at[std::size_t(body)]; };
+  const AngularVec<D> turn = joint.turn_between([&](int body) {
+    const int k = body < 0 ? -1 : turning(state, body);
+    return k < 0 ? AngularVec<D>(AngularVec<D>::Zero())
+                 : AngularVec<D>(rounds<D>(state.turn[std::size_t(k)]));
+  });
+  return rows(joint, side(joint.a.body), side(joint.b.body), {turn, wound(state, number)}, out, off, at);
+}
+
+template <int D>
 bool free_row(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
               const std::type_identity_t<JointTurn<D>>& turn, Row<D>& out, double& way) {
   const JointEquations<D>& its = equations<D>(joint.kind);
@@ -128,12 +141,9 @@ Made<D> as_it_stands(const Joint<D>& joint, const State<D>& state, std::size_t n
     joint.each_body([&](int body) {
       if (body >= 0) all[std::size_t(body)] = motion(body);
     });
-    const auto angle = [&](int body) {
-      return body < 0 ? AngularVec<D>(AngularVec<D>::Zero()) : rounds<D>(turn(body));
-    };
     Row<D> J[kMostHeld<D>];
     double C[kMostHeld<D>];
-    rows(joint, a, b, {joint.turn_between(angle), wound(state, number)}, J, C, all);
+    rows<D>(joint, number, state, all, J, C);
     so.turn = joint.turn;
     if (joint.kind == JointKind::pulley)
       so.length = joint.length - C[0];
@@ -167,6 +177,8 @@ void join_as(Joint<D>& joint, const Made<D>& so) {
 template const JointEquations<2>& equations<2>(JointKind);
 template int rows<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const JointTurn<2>&,
                      Row<2>*, double*, std::span<const BodyMotion<2>>);
+template int rows<2>(const Joint<2>&, std::size_t, const State<2>&, std::span<const BodyMotion<2>>, Row<2>*,
+                     double*);
 template bool free_row<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const JointTurn<2>&,
                           Row<2>&, double&);
 template Wrench<2> load_on_a<2>(const Joint<2>&, const Row<2>&, const BodyMotion<2>&, const BodyMotion<2>&);
@@ -176,6 +188,8 @@ template std::optional<int> follow_ropes<2>(const Model<2>&, State<2>&);
 template const JointEquations<3>& equations<3>(JointKind);
 template int rows<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const JointTurn<3>&,
                      Row<3>*, double*, std::span<const BodyMotion<3>>);
+template int rows<3>(const Joint<3>&, std::size_t, const State<3>&, std::span<const BodyMotion<3>>, Row<3>*,
+                     double*);
 template bool free_row<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const JointTurn<3>&,
                           Row<3>&, double&);
 template Wrench<3> load_on_a<3>(const Joint<3>&, const Row<3>&, const BodyMotion<3>&, const BodyMotion<3>&);

@@ -94,6 +94,12 @@ int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
          const std::type_identity_t<JointTurn<D>>& turn, Row<D>* out, double* off,
          std::type_identity_t<std::span<const BodyMotion<D>>> all = {});
 
+/// The same of a joint, by its number, of the model of a state. `at`: pose and velocity of every body, or of
+/// its bodies, by number.
+template <int D>
+int rows(const Joint<D>& joint, std::size_t number, const State<D>& state,
+         std::type_identity_t<std::span<const BodyMotion<D>>> at, Row<D>* out, double* off);
+
 /// Whether a model has ropes on wheels, or with friction.
 template <int D>
 bool has_wound_ropes(const Model<D>& model) {

@@ -161,16 +161,16 @@ bool Impacts::predict(int i, Impact& impact, const std::vector<ContactBatch>& ba
     return std::fabs(p.x - q.x) + std::fabs(p.y - q.y) + std::fabs(p.w) * bounding_radius_[a] +
            std::fabs(q.w) * bounding_radius_[b];
   };
-  if (most(now_[a], now_[b]) + most(step.dv[a], step.dv[b]) < pair.impact_speed) return false;
+  const double passes = most(now_[a], now_[b]), changes = most(step.dv[a], step.dv[b]);
+  if (passes + changes < pair.impact_speed) return false;
   const ContactBatch& g = batches[pair.slot / kLanes];
   if (!may_meet(pair, g, step)) {
     // what ends faster than it goes on the way: its row sees the end alone; and rows that turn see a way that
     // is not gone
-    const double turns =
-        pair.material.elasticity > kBounces
-            ? step.pace.h * (std::fabs(now_[a].w) + std::fabs(now_[b].w)) * most(now_[a], now_[b])
-            : 0;
-    if (most(step.dv[a], step.dv[b]) + turns >= pair.impact_speed) passing_.push_back(i);
+    const double turns = pair.material.elasticity > kBounces
+                             ? step.pace.h * (std::fabs(now_[a].w) + std::fabs(now_[b].w)) * passes
+                             : 0;
+    if (changes + turns >= pair.impact_speed) passing_.push_back(i);
     return false;
   }
   if (!find_impact(pair, impact, g, step)) {
