@@ -261,7 +261,7 @@ std::vector<bool> fixed_copies(const Fields& fields, int count, bool copied, Dia
         fixed.place,
         copied
             ? fmt::format("'fixed': expected which of the {} copies, such as \"0..{}\" or \"0,{}\", got {}",
-                          count, count - 1, count - 1, quoted(fixed.text()))
+                          count, count - 1, count - 1, in_quotes(fixed.text()))
             : "'fixed': expected true or false; a list of copies needs copies");
   } else {
     for (const int i : *which) held[std::size_t(i)] = true;

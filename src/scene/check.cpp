@@ -130,7 +130,7 @@ class Tables : private Reporter {
       return {};
     }
     if (complaints().enough()) {
-      complaints().add(entry.place, "unknown key " + quoted(entry.key));
+      complaints().add(entry.place, "unknown key " + in_quotes(entry.key));
       return {};
     }
     std::vector<std::string_view> words;
@@ -159,7 +159,7 @@ class Tables : private Reporter {
     } else if (owner.empty() && several) {
       hint = fmt::format("; there are {}", fmt::join(many, ", "));
     }
-    complaints().add(entry.place, fmt::format("unknown key {}{}{}", quoted(entry.key),
+    complaints().add(entry.place, fmt::format("unknown key {}{}{}", in_quotes(entry.key),
                                               owner.empty() ? "" : " in " + owner_text(owner), hint));
     return near;
   }

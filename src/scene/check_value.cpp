@@ -171,13 +171,13 @@ class Values : private Reporter {
     std::optional<sim::Rational> exact;
     if (node.is_text()) {
       exact = sim::parse_rational(node.text());
-      if (!exact) return instead(node, key, quoted(node.text()));
+      if (!exact) return instead(node, key, in_quotes(node.text()));
     } else {
       if (!number(node, key)) return false;
       exact = node.is_integer() ? sim::Rational{std::get<std::int64_t>(node.value), 1}
                                 : sim::from_double(node.number());
     }
-    const std::string got = node.is_text() ? quoted(node.text()) : described(node);
+    const std::string got = node.is_text() ? in_quotes(node.text()) : described(node);
     if (exact && !ranges(node, key, sim::value(*exact), got)) return false;
     const bool seconds = key.unit == "s";
     return (exact && exact->den <= kFinest && (seconds || exact->num <= kFinest)) ||
@@ -407,19 +407,19 @@ class Values : private Reporter {
     const bool good =
         !text.empty() && text.size() <= 100 && letter(text[0]) &&
         std::all_of(text.begin(), text.end(), [](char c) { return letter(c) || digit(c) || c == '-'; });
-    if (!good) return instead(node, key, "letters, digits, _ and -, a letter first", quoted(text));
+    if (!good) return instead(node, key, "letters, digits, _ and -, a letter first", in_quotes(text));
     const auto taken = keys_of("");
     // "ball" may be the name of a [[ball]], and of anything else
     if (std::any_of(taken.begin(), taken.end(),
                     [&](const Key* it) { return it->path == text && it->form != Form::tables; }))
       return wrong(
-          node, fmt::format("'{}': {} is a word of the language; choose another", key.last(), quoted(text)));
+          node, fmt::format("'{}': {} is a word of the language; choose another", key.last(), in_quotes(text)));
     return true;
   }
 
   bool label(const Node& node, const Key& key) {
     if (!node.is_text()) return mistyped(node, key);
-    return is_path_name(node.text()) || instead(node, key, kPathName, quoted(node.text()));
+    return is_path_name(node.text()) || instead(node, key, kPathName, in_quotes(node.text()));
   }
 
   bool things(const Node& node, const Key& key) {
@@ -453,7 +453,7 @@ class Values : private Reporter {
       if (!good) {
         complaints().add(entry.place,
                          fmt::format("a constant has a name of letters, digits and _, a letter first, got {}",
-                                     quoted(text)));
+                                     in_quotes(text)));
         return false;
       }
       const Key own{.path = "constants." + text, .form = Form::expression};
@@ -478,7 +478,7 @@ class Values : private Reporter {
       return wrong(node, fmt::format("'{}': '{}' is not in this version of obscura yet, which has {}",
                                      key.last(), text, known));
     return instead(node, key, "one of " + known,
-                   quoted(text) + did_you_mean(text, {key.choices.begin(), key.choices.end()}));
+                   in_quotes(text) + did_you_mean(text, {key.choices.begin(), key.choices.end()}));
   }
 
   bool choices(const Node& node, const Key& key) {
@@ -507,7 +507,7 @@ class Values : private Reporter {
     if (!node.is_text()) return mistyped(node, key);
     if (draw::color(node.text())) return true;
     const std::string hint = did_you_mean(node.text(), {std::begin(kColors), std::end(kColors)});
-    return wrong(node, fmt::format("'{}': {} is no colour{}", key.last(), quoted(node.text()),
+    return wrong(node, fmt::format("'{}': {} is no colour{}", key.last(), in_quotes(node.text()),
                                    hint.empty() ? fmt::format("; expected \"#rrggbb\" or one of {}",
                                                               fmt::join(kColors, ", "))
                                                 : hint));

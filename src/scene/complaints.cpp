@@ -44,7 +44,7 @@ std::string one_line(std::string_view text) {
   return line;
 }
 
-std::string quoted(std::string_view word) {
+std::string in_quotes(std::string_view word) {
   // cut where a code point ends
   std::size_t most = std::min(word.size(), kLongestWord);
   while (most > 0 && most < word.size() && (static_cast<unsigned char>(word[most]) & 0xC0) == 0x80) --most;

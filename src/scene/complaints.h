@@ -44,7 +44,7 @@ class Diagnostics {
 std::string one_line(std::string_view text);
 
 /// "'ball'", cut where it is long: a word of the scene as a complaint quotes it.
-std::string quoted(std::string_view word);
+std::string in_quotes(std::string_view word);
 
 /// The word of `words` that was probably meant; empty where none is near.
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& words);

@@ -85,8 +85,8 @@ class ConditionBuilder {
     std::sort(when.pairs.begin(), when.pairs.end());
     when.pairs.erase(std::unique(when.pairs.begin(), when.pairs.end()), when.pairs.end());
     if (a.empty() || b.empty() || !when.pairs.empty()) return;
-    const std::string what = fmt::format("'{}': {} and {}", key, scene::quoted(node.list()[0].text()),
-                                         scene::quoted(node.list()[1].text()));
+    const std::string what = fmt::format("'{}': {} and {}", key, scene::in_quotes(node.list()[0].text()),
+                                         scene::in_quotes(node.list()[1].text()));
     complaints_.add(node.place,
                     handout ? what +
                                   " do not touch in collision = \"handout\", which knows only walls; "
@@ -152,7 +152,7 @@ class ConditionBuilder {
     });
     if (!may && !parted(when.those))
       complaints_.add(node.place, fmt::format("{} never breaks: give it a 'breaks', the force that it bears",
-                                              scene::quoted(node.text())));
+                                              scene::in_quotes(node.text())));
   }
 
   // whether an event takes one of these joints away

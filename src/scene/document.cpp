@@ -286,7 +286,7 @@ std::string repeated(std::string_view text, int line, std::string_view descripti
     }
   }
   const std::string where = first > 0 ? fmt::format("; the first is in line {}", first) : "";
-  if (!header) return fmt::format("{} is given a second time{}", scene::quoted(name), where);
+  if (!header) return fmt::format("{} is given a second time{}", scene::in_quotes(name), where);
   return fmt::format("{} is given a second time{}{}", one_line(here.substr(0, here.rfind(']') + 1)), where,
                      other_kind ? "" : ": put its keys together");
 }

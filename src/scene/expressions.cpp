@@ -112,7 +112,7 @@ void Constants::refuse_unused() const {
       }
     }
     if (!used)
-      complaints_.add(entry.place, fmt::format("no expression reads the constant {}{}", quoted(entry.key),
+      complaints_.add(entry.place, fmt::format("no expression reads the constant {}{}", in_quotes(entry.key),
                                                did_you_mean(entry.key, names)));
   }
 }

@@ -47,7 +47,7 @@ bool Reporter::instead(const Node& node, const Key& key, const std::string& what
 }
 
 bool Reporter::unknown(const Entry& entry, const std::string& in, const std::string& hint) {
-  complaints_.add(entry.place, fmt::format("unknown key {} in {}{}", quoted(entry.key), in, hint));
+  complaints_.add(entry.place, fmt::format("unknown key {} in {}{}", in_quotes(entry.key), in, hint));
   return false;
 }
 

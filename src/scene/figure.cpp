@@ -172,7 +172,7 @@ class Reader {
  private:
   void tell_one(const Node& name, std::size_t count) const {
     complaints_.add(name.place, fmt::format("{} is {} bodies, and one is wanted: say which",
-                                            scene::quoted(name.text()), count));
+                                            scene::in_quotes(name.text()), count));
   }
   std::optional<draw::Cue> cue(const Fields& fields, const char* key) const {
     const Node* node = fields.given(key);
@@ -215,7 +215,7 @@ std::vector<int> its_others(const Node& with, draw::Quantity quantity, const Whe
     case draw::Quantity::spring_force:
       found = names.springs_called(text);
       if (found.empty())
-        complaints.add(with.place, fmt::format("no spring is called {}", scene::quoted(text)));
+        complaints.add(with.place, fmt::format("no spring is called {}", scene::in_quotes(text)));
       return found;
     case draw::Quantity::joint_force:
     case draw::Quantity::joint_torque:

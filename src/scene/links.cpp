@@ -114,7 +114,7 @@ std::vector<sim::End<D>> ends(const Node& node, const Seating<D>& roster, const 
   const sim::Body<D>& first = world.model.bodies[std::size_t(all.front().body)];
   if ((local || at) && sim::round_radius(first.shape) && (sim::is_point(first.shape) || !first.turns())) {
     complaints.add((local ? local : at)->place,
-                   fmt::format("{} is a particle, which has no point but its centre", quoted(name.text())));
+                   fmt::format("{} is a particle, which has no point but its centre", in_quotes(name.text())));
     return {};
   }
   for (End& end : all) {
@@ -134,11 +134,11 @@ std::vector<sim::End<D>> ends(const Node& node, const Seating<D>& roster, const 
           at->place,
           spot<D>(its, "top right")
               ? fmt::format("'at': expected a corner or side such as \"top right\" or \"left\", got {}{}",
-                            quoted(at->text()), did_you_mean(at->text(), words))
+                            in_quotes(at->text()), did_you_mean(at->text(), words))
               : fmt::format("'at': expected {}, got {}",
                             words.size() > 1 ? "a side such as \"top\" or \"left\""
                                              : "\"center\", or a point as 'local'",
-                            quoted(at->text())));
+                            in_quotes(at->text())));
       return {};
     }
     end.local = *place;

@@ -112,7 +112,7 @@ void write(Node& table, const std::string& owner, const std::vector<Step>& path,
     if (here->is_list()) {
       const auto n = component(step.name);
       if (!n || !step.indices.empty() || *n >= here->list().size())
-        return complaints.add(place, fmt::format("a list has no {}; expected {}", quoted(step.name),
+        return complaints.add(place, fmt::format("a list has no {}; expected {}", in_quotes(step.name),
                                                  dimension == 2 ? "x or y" : "x, y or z"));
       here = &here->list()[*n];
     } else if (here->is_table()) {
@@ -136,12 +136,12 @@ void write(Node& table, const std::string& owner, const std::vector<Step>& path,
       here = next;
     } else {
       return complaints.add(
-          place, fmt::format("{} is asked of {}, which is no table", quoted(step.name), described(*here)));
+          place, fmt::format("{} is asked of {}, which is no table", in_quotes(step.name), described(*here)));
     }
 
     // into a list by index
     for (const std::int64_t index : step.indices) {
-      if (!here->is_list()) return complaints.add(place, fmt::format("{} is no list", quoted(step.name)));
+      if (!here->is_list()) return complaints.add(place, fmt::format("{} is no list", in_quotes(step.name)));
       if (index >= std::int64_t(here->list().size()))
         return complaints.add(place, fmt::format("{}[{}]: there are {}, numbered from 0", step.name, index,
                                                  here->list().size()));
@@ -202,11 +202,11 @@ std::vector<CopySet> apply(const std::vector<std::string>& sets, Node& top, Diag
       if (first.indices.size() > 1) copy = first.indices[1];
     } else {
       complaints.add(place,
-                     fmt::format("nothing here is called {}{}", quoted(first.name), starts(top, first.name)));
+                     fmt::format("nothing here is called {}{}", in_quotes(first.name), starts(top, first.name)));
       continue;
     }
     if (rest.empty()) {
-      complaints.add(place, fmt::format("expected a key of {}, such as {}.{}=...", quoted(first.name),
+      complaints.add(place, fmt::format("expected a key of {}, such as {}.{}=...", in_quotes(first.name),
                                         first.name, keys_of(found.kind)[1]->last()));
       continue;
     }

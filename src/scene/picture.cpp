@@ -190,7 +190,7 @@ std::vector<draw::Camera> cameras(const Node& top, const NameTable& roster, Diag
     for (std::size_t k = 0; k < i; ++k)
       if (several[i].name == several[k].name)
         complaints.add(all->list()[i].place, fmt::format("two cameras are called {}: give one another 'name'",
-                                                         quoted(several[i].name)));
+                                                         in_quotes(several[i].name)));
   if (several.empty())
     several.push_back(camera<D>(Fields(Node{{}, Node::Table{}}, "camera"), roster, complaints));
   return several;

@@ -49,7 +49,7 @@ bool Readings<D>::read(const Node& node, const char* key, const std::string& tex
   names_.constants.read_by(text);
   const auto several = [&](const std::string& name, std::size_t count, const char* what) {
     names_.complaints.add(node.place, fmt::format("'{}': {} is {} {}; an expression reads one of them", key,
-                                                  scene::quoted(name), count, what));
+                                                  scene::in_quotes(name), count, what));
     return false;
   };
   // where they stand in the text

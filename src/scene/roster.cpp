@@ -38,7 +38,7 @@ const Group* NameTable::group(const std::string& name, Place place, Diagnostics&
   std::vector<std::string_view> names;
   if (!complaints.enough())
     for (const Group& each : groups) names.push_back(each.name);
-  complaints.add(place, fmt::format("no body is called {}{}", quoted(name), did_you_mean(name, names)));
+  complaints.add(place, fmt::format("no body is called {}{}", in_quotes(name), did_you_mean(name, names)));
   return nullptr;
 }
 
@@ -53,7 +53,7 @@ std::vector<int> NameTable::bodies(const std::string& text, Place place, Diagnos
   const auto its = reference(text);
   if (!its) {
     complaints.add(place, fmt::format("{} is not the name of a body; expected one such as ball or ball[3]",
-                                      quoted(text)));
+                                      in_quotes(text)));
     return {};
   }
   const Group* it = group(its->bracketed ? its->name : text, place, complaints);
@@ -64,7 +64,7 @@ std::vector<int> NameTable::bodies(const std::string& text, Place place, Diagnos
   }
   auto which = range(its->which, it->count);
   if (!which) {
-    complaints.add(place, fmt::format("{}: '{}' has {} copies, {}[0] .. {}[{}]", quoted(text), it->name,
+    complaints.add(place, fmt::format("{}: '{}' has {} copies, {}[0] .. {}[{}]", in_quotes(text), it->name,
                                       it->count, it->name, it->name, it->count - 1));
     return {};
   }

@@ -78,7 +78,7 @@ class Putting {
     const std::string text = node.text();
     const auto parsed = parse_mark(text);
     if (!parsed || std::find(declared_.begin(), declared_.end(), parsed->first) == declared_.end()) {
-      complaints_.add(node.place, fmt::format("no [[when]] makes a mark {}{}", scene::quoted(text),
+      complaints_.add(node.place, fmt::format("no [[when]] makes a mark {}{}", scene::in_quotes(text),
                                               did_you_mean(parsed ? parsed->first : text,
                                                            {declared_.begin(), declared_.end()})));
       return {};

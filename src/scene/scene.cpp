@@ -92,7 +92,7 @@ std::vector<int> groups_of(const Node& word, NameTable& roster, sim::Model<D>& m
     std::vector<std::string_view> words;
     for (const auto& [name, number] : roster.families) words.push_back(name);
     for (const Group& group : roster.groups) words.push_back(group.name);
-    complaints.add(word.place, fmt::format("no group or body is called {}{}", scene::quoted(text),
+    complaints.add(word.place, fmt::format("no group or body is called {}{}", scene::in_quotes(text),
                                            did_you_mean(text, words)));
     return {};
   }
@@ -121,7 +121,7 @@ std::vector<int> groups_of(const Node& word, NameTable& roster, sim::Model<D>& m
     complaints.add(word.place,
                    fmt::format("{} is of a group with '{}', and a body has one group; give 'group' "
                                "to what [contact] ignore names",
-                               scene::quoted(text), model.bodies[std::size_t(body)].name));
+                               scene::in_quotes(text), model.bodies[std::size_t(body)].name));
     return {};
   }
   return groups;
@@ -235,7 +235,7 @@ int observer(const Node& top, const NameTable& roster, const sim::Model<D>& mode
   if (!its || (its->text() == "room" && roster.index.count("room") == 0)) return -1;
   const std::vector<int> found = roster.bodies(its->text(), its->place, complaints);
   if (found.size() > 1)
-    complaints.add(its->place, fmt::format("{} is {} bodies; one sees the room", scene::quoted(its->text()),
+    complaints.add(its->place, fmt::format("{} is {} bodies; one sees the room", scene::in_quotes(its->text()),
                                            found.size()));
   const auto refuse = [&](bool any, const char* what) {
     if (any) complaints.add(its->place, fmt::format("an observer sees a room without {}", what));

@@ -70,7 +70,7 @@ class ActionBuilder {
     for (const std::string_view word : kTaken) {
       if (mark.text() != word) continue;
       complaints_.add(mark.place, fmt::format("'mark': {} is a word of --measure; choose another",
-                                              scene::quoted(mark.text())));
+                                              scene::in_quotes(mark.text())));
       return;
     }
     when.actions.push_back({Do::mark, mark.text(), {}});
@@ -95,7 +95,7 @@ class ActionBuilder {
         for (const sim::Joint<D>& joint : model_.joints) names.push_back(joint.name);
         for (const NameRange& spring : names_.springs) names.push_back(spring.name);
         complaints_.add(node.place, fmt::format("no body, joint or spring is called {}{}",
-                                                scene::quoted(text), did_you_mean(text, names)));
+                                                scene::in_quotes(text), did_you_mean(text, names)));
         return;
       }
       for (const int joint : action.of) {
@@ -132,7 +132,7 @@ class ActionBuilder {
           complaints_.add(
               node.place,
               fmt::format("{} holds from the start; an event makes it where it has joined = false",
-                          scene::quoted(node.text())));
+                          scene::in_quotes(node.text())));
           return;
         }
         action.of.push_back(joining(joint));
@@ -148,8 +148,8 @@ class ActionBuilder {
     if (a.empty() || b.empty()) return;
     if (a.size() != b.size() && a.size() != 1 && b.size() != 1) {
       complaints_.add(node.place, fmt::format("'join': {} are {} and {} are {}: expected as many, or one",
-                                              scene::quoted(node.list()[0].text()), a.size(),
-                                              scene::quoted(node.list()[1].text()), b.size()));
+                                              scene::in_quotes(node.list()[0].text()), a.size(),
+                                              scene::in_quotes(node.list()[1].text()), b.size()));
       return;
     }
     Action action{Do::change, "", {}};
@@ -157,9 +157,9 @@ class ActionBuilder {
       const int one = a[a.size() == 1 ? 0 : i], other = b[b.size() == 1 ? 0 : i];
       if (one == other || !(changes_.moves(one) || changes_.moves(other))) {
         complaints_.add(node.place,
-                        one == other ? fmt::format("'join': both are {}", scene::quoted(named(one)))
+                        one == other ? fmt::format("'join': both are {}", scene::in_quotes(named(one)))
                                      : fmt::format("'join': neither {} nor {} moves",
-                                                   scene::quoted(named(one)), scene::quoted(named(other))));
+                                                   scene::in_quotes(named(one)), scene::in_quotes(named(other))));
         return;
       }
       action.of.push_back(joining(glued(one, other)));
@@ -281,7 +281,7 @@ void ready_to_let_go(const Node& top, const NameTable& roster, Constants& consta
       if (moves && std::find(held.begin(), held.end(), body) == held.end()) {
         complaints.add(node.place, fmt::format("{} lets go what is 'fixed' or has a 'motion', and {} is free",
                                                release ? "'release'" : "fixed = false",
-                                               scene::quoted(model.bodies[std::size_t(body)].name)));
+                                               scene::in_quotes(model.bodies[std::size_t(body)].name)));
         return;
       }
       sim::Drive<D> drive;

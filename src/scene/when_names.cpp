@@ -32,7 +32,7 @@ std::vector<int> WhenNames<D>::side(const Node& node) const {
     complaints.add(node.place,
                    fmt::format("{} is a body, and a wall of the room, which is wall[{}] too: give "
                                "the body another name",
-                               scene::quoted(text), k));
+                               scene::in_quotes(text), k));
     return {};
   }
   if (!is_body(text)) {
@@ -41,7 +41,7 @@ std::vector<int> WhenNames<D>::side(const Node& node) const {
       if (!which) {
         complaints.add(node.place, walls == 0 ? "the room has no walls"
                                               : fmt::format("{}: the room has {} walls, wall[0] .. wall[{}]",
-                                                            scene::quoted(text), walls, walls - 1));
+                                                            scene::in_quotes(text), walls, walls - 1));
         return {};
       }
       std::vector<int> all;
@@ -55,7 +55,7 @@ std::vector<int> WhenNames<D>::side(const Node& node) const {
     for (int k = walls - listed; k < 6; ++k) {
       if (text != kWalls[k]) continue;
       complaints.add(node.place,
-                     fmt::format("the room has no {}; its walls are wall[*]", scene::quoted(text)));
+                     fmt::format("the room has no {}; its walls are wall[*]", scene::in_quotes(text)));
       return {};
     }
   }
@@ -98,7 +98,7 @@ std::string WhenNames<D>::unknown_joint(const std::string& text) const {
   std::vector<std::string_view> names;
   for (const sim::Joint<D>& joint : model.joints) names.push_back(joint.name);
   for (const NameRange& bond : bonds) names.push_back(bond.name);
-  return fmt::format("no joint or bond is called {}{}", scene::quoted(text), did_you_mean(text, names));
+  return fmt::format("no joint or bond is called {}{}", scene::in_quotes(text), did_you_mean(text, names));
 }
 
 template struct WhenNames<2>;

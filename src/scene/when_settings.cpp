@@ -62,7 +62,7 @@ class SettingReader {
   void set(const Node& node, const Node* to, When& when) {
     const std::string& path = node.text();
     if (!to) {
-      complaints_.add(node.place, fmt::format("'set' needs 'to', the new value of {}", scene::quoted(path)));
+      complaints_.add(node.place, fmt::format("'set' needs 'to', the new value of {}", scene::in_quotes(path)));
       return;
     }
     if (changes_.bonded(node.place)) return;
@@ -95,7 +95,7 @@ class SettingReader {
                     "(JOINT.motor.speed), JOINT.friction, forces (FORCE.components), room.wind, electric, "
                     "magnetic and gravity, SPRING.stiffness, damping and rest_length, BODY.fixed, "
                     "velocity, spin, mass, charge, drag, quadratic_drag and surface_speed",
-                    scene::quoted(path)));
+                    scene::in_quotes(path)));
   }
 
  private:
@@ -110,7 +110,7 @@ class SettingReader {
     for (const int body : names_.roster.bodies(text, node.place, complaints_)) {
       if (model_.bodies[std::size_t(body)].linked) {
         complaints_.add(node.place, fmt::format("{} is a link of a [[chain]], which events do not fix",
-                                                scene::quoted(model_.bodies[std::size_t(body)].name)));
+                                                scene::in_quotes(model_.bodies[std::size_t(body)].name)));
         return;
       }
       all.push_back(changes_.of(Change::Of::hold, body));
@@ -124,7 +124,7 @@ class SettingReader {
     for (const int body : those) {
       const sim::Body<D>& its = model_.bodies[std::size_t(body)];
       if (!its.linked && changes_.moves(body)) continue;
-      complaints_.add(node.place, fmt::format("{} is {}, and {} stays", scene::quoted(its.name),
+      complaints_.add(node.place, fmt::format("{} is {}, and {} stays", scene::in_quotes(its.name),
                                               its.linked ? "a link of a [[chain]]" : "fixed", what));
       return {};
     }
@@ -172,7 +172,7 @@ class SettingReader {
       for (std::size_t k = 0; !alone && to.is_list() && k < to.list().size(); ++k)
         if (good(to.list()[k])) components.push_back(&to.list()[k]);
       if (components.size() != (alone ? 1 : D) || (!alone && to.list().size() != D)) {
-        complaints_.add(to.place, fmt::format("{}: expected {}", scene::quoted(node.text()),
+        complaints_.add(to.place, fmt::format("{}: expected {}", scene::in_quotes(node.text()),
                                               alone    ? "degrees a second, or an expression"
                                               : D == 2 ? "[x, y]"
                                                        : "[x, y, z]"));
@@ -241,7 +241,7 @@ class SettingReader {
       if (!sim::has_free_row(its)) {
         complaints_.add(node.place,
                         fmt::format("'set': the friction of {} stays as it is while the room runs",
-                                    scene::quoted(its.name)));
+                                    scene::in_quotes(its.name)));
         return;
       }
       all.push_back(changes_.of(Change::Of::rub, joint, its.friction));
@@ -285,7 +285,7 @@ class SettingReader {
     for (const int joint : those) {
       const auto& its = made->joints[std::size_t(joint)].motor;
       if (!its) {
-        complaints_.add(node.place, fmt::format("{} has no motor", scene::quoted(text)));
+        complaints_.add(node.place, fmt::format("{} has no motor", scene::in_quotes(text)));
         return;
       }
       all.push_back(changes_.of(Change::Of::motor, joint));

@@ -115,8 +115,8 @@ void refuse_kept_apart(const WhenNames<D>& names, const sim::When<D>& when, cons
   names.complaints.add(
       two.place, fmt::format("'{}': {} and {} are joined by {}, which lets them through each other; "
                              "give it touching = true",
-                             key, scene::quoted(two.list()[0].text()), scene::quoted(two.list()[1].text()),
-                             scene::quoted(by)));
+                             key, scene::in_quotes(two.list()[0].text()), scene::in_quotes(two.list()[1].text()),
+                             scene::in_quotes(by)));
 }
 
 }  // namespace

@@ -33,6 +33,9 @@ constexpr double kBends = 1e-6;        // of v^2 / L: less is no bend
 constexpr double kShortest = 1e-9;     // of the room: an arm
 constexpr double kTakesPart = 1e-6;    // of a unit of balanced forces
 
+// compiled once, not for each expression
+Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return a * b; }
+
 template <int D>
 constexpr int kFreedoms = D + kAngular<D>;
 
@@ -78,32 +81,33 @@ class Linkage {
       size[r] = J.row(r).norm();
       if (size[r] > 0) J.row(r) /= size[r];
     }
-    const Eigen::MatrixXd K = J * J.transpose();
+    const Eigen::MatrixXd K = product(J, J.transpose());
     FullRank rank;
     rank.symmetric({K.data(), std::size_t(K.size())}, rows_, kMayDepend);
     if (rank.rank() == rows_) return {-1, 0};
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> forces(K), ways(J.transpose() * J);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> forces(K), ways(product(J.transpose(), J));
     const double zero = kOfRankNone * std::max(1.0, forces.eigenvalues()[rows_ - 1]);
-    const auto zeros = [&](const auto& solver) {
-      return int((solver.eigenvalues().array() <= zero).count());
+    const auto zeros = [&](const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& of) {
+      return int((of.eigenvalues().array() <= zero).count());
     };
     const int balanced = zeros(forces), free = zeros(ways);
     if (balanced == 0 || free == 0) return {-1, 0};
     const Eigen::MatrixXd stress = forces.eigenvectors().leftCols(balanced),
                           motions = ways.eigenvectors().leftCols(free);
     for (int k = 0; k < free; ++k) {
-      Eigen::VectorXd l = stress.transpose() * bends(motions.col(k)).cwiseProduct(inverse(size));
+      Eigen::VectorXd l = product(stress.transpose(), bends(motions.col(k)).cwiseProduct(inverse(size)));
       const double passes = fastest(motions.col(k));
       if (!(l.norm() > kBends * passes * passes / longest_arm())) continue;
       l.normalize();
-      const Eigen::VectorXd in_rows = (stress * l).cwiseProduct(inverse(size));
-      const Eigen::MatrixXd form = motions.transpose() * bend_form(in_rows) * motions;
+      const Eigen::VectorXd balance = product(stress, l);
+      const Eigen::MatrixXd form =
+          product(motions.transpose(), product(bend_form(balance.cwiseProduct(inverse(size))), motions));
       const Eigen::VectorXd signs =
           Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(form, Eigen::EigenvaluesOnly).eigenvalues();
       const double least = signs.minCoeff(), most = signs.maxCoeff();
       const double large = std::max(std::fabs(least), std::fabs(most));
       if (std::min(std::fabs(std::min(least, 0.0)), std::max(most, 0.0)) > kOneSign * large) continue;
-      return named_of(stress * l);
+      return named_of(balance);
     }
     return {-1, 0};
   }
