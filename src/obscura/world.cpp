@@ -147,7 +147,7 @@ int World::body(std::string_view name) const {
   std::vector<std::string_view> names;
   for (const Body& body : all) names.push_back(body.name);
   throw UsageError(
-      fmt::format("no body is called {}{}", scene::quoted(name), scene::did_you_mean(name, names)));
+      fmt::format("no body is called {}{}", scene::in_quotes(name), scene::did_you_mean(name, names)));
 }
 
 namespace {
@@ -199,7 +199,7 @@ double World::read(std::string_view quantity) const {
   std::vector<std::string_view> names;
   for (const app::Column& column : all) names.push_back(column.name);
   throw UsageError(
-      fmt::format("no quantity {}{}", scene::quoted(quantity), scene::did_you_mean(quantity, names)));
+      fmt::format("no quantity {}{}", scene::in_quotes(quantity), scene::did_you_mean(quantity, names)));
 }
 
 std::vector<std::string> World::quantities() const {
