@@ -373,7 +373,7 @@ std::vector<Key> world_rows() {
       {.path = "track.name", .form = name, .absent = "`track[0]`, ...", .doc = "Its name.", .example = "\"loop\""},
       {.path = "track.points", .form = curve, .unit = "m", .absent = "`x` and `y` are given",
        .doc = "Places that straight pieces join; `{ through, to }`: an arc; `{ to }`: an arc that goes on as the piece before; `{ spline = [...] }`: a smooth curve through places. Each piece goes on as the one before. It is closed if it comes back to its beginning.",
-       .example = "[[0, 2], [1, 1], { to = [2, 0.6] }, [4, 0.6]]"},
+       .example = "[[0, 2], [1, 1], { to = [2, 0.5858] }, [4, 0.5858]]"},
       {.path = "track.round", .form = number, .unit = "m", .absent = "corners are errors", .range = kPositive, .doc = "Radius of arcs that round the corners of straight pieces.", .example = "0.3"},
       {.path = "track.x", .form = expression, .unit = "m", .absent = "`points` are given", .doc = "Its x as a function of s. Expressions may read s and [constants].", .example = "\"2*cos(s)\""},
       {.path = "track.y", .form = expression, .unit = "m", .absent = "`points` are given", .doc = "The same of y.", .example = "\"2 + sin(s)\""},

@@ -10,6 +10,7 @@
 #include "draw/page/placing.h"
 #include "draw/page/plot.h"
 #include "draw/picture/latex.h"
+#include "draw/picture/prose.h"
 #include "draw/picture/type.h"
 
 namespace obscura::draw {
@@ -124,6 +125,18 @@ TEST(Formula, AnUnknownCommandIsToldWithItsColumn) {
   EXPECT_EQ(found->what, "unknown command '\\omgea'; did you mean '\\omega'?");
   EXPECT_TRUE(mistake("a $b"));
   EXPECT_EQ(mistake("café \\omgea")->column, 6u);  // counted in characters
+  // of TOML's "a \theta" a tab is left
+  EXPECT_EQ(
+      mistake("a \theta")->what,
+      "in double quotes '\\theta' begins with a tab: write '\\\\theta', or put the text in single quotes");
+  EXPECT_EQ(mistake("a \theta")->column, 3u);
+  EXPECT_TRUE(mistake("in words \beta and $x$"));
+  EXPECT_TRUE(mistake("$\nu$"));
+  EXPECT_FALSE(mistake("words\nu$x$"));  // a line that ends
+  EXPECT_FALSE(mistake("a \t b"));
+  EXPECT_TRUE(prose_mistake("An angle \theta"));
+  EXPECT_EQ(prose_mistake("Über $a$ und \rho")->column, 14u);
+  EXPECT_FALSE(prose_mistake("Two lines\nu"));
 }
 
 // What is not whole: told at its column, with how it is written.

@@ -79,6 +79,48 @@ TEST(JointedImpacts, ABoxOfAChainInSpaceLeavesTheFloorAsByTheExactSolver) {
   }
 }
 
+// All corners of a row of boxes meet the floor at once: each box bounces as it would alone, v' = -e v, and
+// no pin bends.
+World<2> level_row(int rate) {
+  World<2> world = touching_room(Collision::contact, {0, 0});
+  world.model.rate = {rate, 1};
+  add_wall(world, {0, 0}, {0, 1});
+  const double v = -2;
+  for (int i = 0; i < 8; ++i) {
+    add_box(world, {0.4, 0.3}, 1 + 0.1 * i, {0.45 * i, 0.15 - v * (kSteps - 0.5) / rate}, {0, v}, 0, 0, 0.8);
+    if (i == 0) continue;
+    world.model.joints.push_back(pin({i, {-0.225, 0}}, {i - 1, {0.225, 0}}));
+    world.model.ignore.emplace_back(i - 1, i);
+  }
+  rub(world, 0.4);
+  return world;
+}
+
+template <int D>
+void expect_level(World<D> world, int rate) {
+  for (const Solver solver : {Solver::direct, Solver::iterative}) {
+    world.model.solver = solver;
+    const State<D> got = stepped(world, kSteps);
+    for (std::size_t i = 0; i < got.v.size(); ++i) {
+      Vec<D> want = Vec<D>::Zero();
+      want.y() = 0.8 * 2;
+      EXPECT_NEAR((got.v[i] - want).norm(), 0, 1e-9) << "box " << i << " at " << rate;
+      EXPECT_NEAR(got.spin[i].norm(), 0, 1e-9) << "box " << i << " at " << rate;
+    }
+  }
+}
+
+TEST(JointedImpacts, ALevelRowBouncesLevel) {
+  for (const int rate : {60, 600}) {
+    const World<2> flat = level_row(rate);
+    expect_level(flat, rate);
+    World<3> world = extruded(flat, 0.2);
+    for (Joint<3>& joint : world.model.joints) joint.turn.setZero();
+    world.model.ignore = flat.model.ignore;
+    expect_level(world, rate);
+  }
+}
+
 // Bricks turned anyhow in ball joints, one of which comes down first, on a corner.
 World<3> figure(int seed, int rate) {
   Chance chance(std::uint64_t(seed) * 7919 + 5);

@@ -311,15 +311,22 @@ void Account::heed(const std::vector<sim::RunEvent>& events) {
         [&](const auto& world) {
           using When = typename std::decay_t<decltype(world.model.whens)>::value_type;
           using Change = typename std::decay_t<decltype(world.model.changes)>::value_type;
-          const double at = sim::value(event.time);
+          const double at = sim::value(event.time), step = 1 / sim::value(world.model.rate);
+          // seen where the step ends
+          const auto at_once = [&](std::vector<std::pair<double, int>>& all, int joint) {
+            for (auto& [time, of] : all)
+              if (of == joint && time > at && time - at < 1.001 * step) time = at;
+          };
           for (const auto& action : world.model.whens[std::size_t(event.when)].actions) {
             if (action.what == When::Action::Do::part) parted_.insert(action.of.begin(), action.of.end());
             for (const int of : action.of) {
+              if (action.what == When::Action::Do::part) at_once(broken_, of);
               if (action.what == When::Action::Do::let_go)
                 freed_.emplace_back(at, world.model.drives[std::size_t(of)].body);
               if (action.what != When::Action::Do::change) continue;
               const Change& change = world.model.changes[std::size_t(of)];
               if (change.of == Change::Of::hold) held_still_.emplace_back(at, change.index);
+              if (change.of == Change::Of::join) at_once(made_, change.index);
             }
           }
         },

@@ -24,7 +24,7 @@ constexpr double kPathError = 0.2;   // page units
 constexpr double kCurveError = 0.3;  // of a path's error: of the points among which the needed ones are found
 constexpr double kFaintest = 0.22;   // of a path's oldest end
 constexpr double kSteadyArrow = 1;   // points: of an arrow from sample to sample
-constexpr double kArrowSeen = 0.2;   // page units: of less an arrow is none
+constexpr double kArrowSeen = 0.002;  // page units: of less an arrow is of nothing, but for rounding
 
 // points of a curve that are needed for it to be no farther than `tolerance` from the line through them, by
 // Douglas and Peucker

@@ -147,7 +147,20 @@ class Setter {
   }
   static double width_of(const Formula& f) { return shape({{0, 0}, Align::left, f.spans}).width; }
 
+  // with raised digits as scripts: those that fonts have have weights of their own
   void put(std::string_view c, Face face, double scale, double rise) {
+    static constexpr std::pair<std::string_view, std::string_view> kRaised[] = {
+        {"¹", "1"}, {"²", "2"}, {"³", "3"}};
+    for (const auto& [sign, digit] : kRaised) {
+      const std::size_t at = c.find(sign);
+      if (at == c.npos) continue;
+      put(c.substr(0, at), face, scale, rise);
+      put(digit, Face::math, kScript * scale, rise + scale * kSuper);
+      return put(c.substr(at + sign.size()), face, scale, rise);
+    }
+    put_plain(c, face, scale, rise);
+  }
+  void put_plain(std::string_view c, Face face, double scale, double rise) {
     if (c.empty()) return;
     const double em = scale * out_.size;
     const double up = rise * out_.size;

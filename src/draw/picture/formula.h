@@ -46,6 +46,9 @@ struct FormulaMistake {
 };
 std::optional<FormulaMistake> mistake(std::string_view text);
 
+/// The same of a control character at i where plain words stand: what TOML makes of "\theta".
+std::optional<FormulaMistake> escaped_in_words(std::string_view words, std::size_t i);
+
 /// Sets `text` at an em of `size` page units. A name that is not known stays as it was written. What stands
 /// between kNumber and kNumberEnd is a number in digits of equal width, with so many ems of `room` before it.
 Formula formula(std::string_view text, double size, Color color, double room = 0);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "draw/picture/formula.h"
@@ -57,6 +58,22 @@ Need need_of(std::string_view word) {
   return {"its letter", "{v}"};
 }
 
+// what TOML made of a command in double quotes whose backslash is written once: "\theta" is a tab and "heta"
+std::optional<FormulaMistake> escaped_command(std::string_view text, std::size_t i) {
+  static constexpr std::string_view kCharacters = "\b\t\n\f\r", kLetters = "btnfr";
+  static constexpr std::array kNames = {"backspace", "tab", "line break", "form feed", "carriage return"};
+  const std::size_t which = kCharacters.find(text[i]);
+  if (which == kCharacters.npos) return {};
+  std::size_t to = i + 1;
+  while (to < text.size() && formulas::latin(text[to])) ++to;
+  const std::string word = kLetters[which] + std::string(text.substr(i + 1, to - i - 1));
+  if (word.size() < 2 || !formulas::known(word)) return {};
+  return FormulaMistake{i + 1,
+                        fmt::format("in double quotes '\\{}' begins with a {}: write '\\\\{}', or put the "
+                                    "text in single quotes",
+                                    word, kNames[which], word)};
+}
+
 /// Reads mathematics, all of it or a part that has to be whole.
 class FormulaReader {
  public:
@@ -84,6 +101,8 @@ class FormulaReader {
         return at(from, "'}' without a '{' that it closes");
       } else if (c == '\\') {
         command(from, i, end, lefts);
+      } else if (const auto escaped = escaped_command(text_, from)) {
+        return escaped;
       }
     }
     if (wrong_) return wrong_;
@@ -191,6 +210,7 @@ class FormulaReader {
 // a command where words stand, which would be shown as it is written
 std::optional<FormulaMistake> command_in_words(std::string_view text, std::size_t begin, std::size_t end) {
   for (std::size_t i = begin; i + 1 < end; ++i) {
+    if (const auto escaped = escaped_in_words(text, i)) return escaped;
     if (text[i] != '\\' || !formulas::latin(text[i + 1])) continue;
     std::size_t to = i + 1;
     while (to < end && formulas::latin(text[to])) ++to;
@@ -210,6 +230,10 @@ std::optional<FormulaMistake> in_characters(std::optional<FormulaMistake> found,
 }
 
 }  // namespace
+
+std::optional<FormulaMistake> escaped_in_words(std::string_view words, std::size_t i) {
+  return words[i] == '\n' ? std::nullopt : escaped_command(words, i);
+}
 
 std::optional<FormulaMistake> mistake(std::string_view text) {
   if (formulas::dollar(text, 0) == text.npos)

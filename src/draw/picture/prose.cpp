@@ -204,7 +204,14 @@ std::optional<FormulaMistake> prose_mistake(std::string_view words) {
         wrong->column += characters(phrase.begin) - 1;
         return wrong;
       }
-    } else if (const std::size_t open = formulas::dollar(phrase.text, 0); open != words.npos) {
+      continue;
+    }
+    for (std::size_t i = 0; i < phrase.text.size(); ++i)
+      if (auto wrong = escaped_in_words(phrase.text, i)) {
+        wrong->column = characters(phrase.begin + i) + 1;
+        return wrong;
+      }
+    if (const std::size_t open = formulas::dollar(phrase.text, 0); open != words.npos) {
       // no money: a command follows
       for (std::size_t i = open; i + 1 < phrase.text.size(); ++i)
         if (phrase.text[i] == '\\' && formulas::latin(phrase.text[i + 1]))

@@ -29,6 +29,7 @@ struct Row {
   AngularVec<D> angular_b = AngularVec<D>::Zero();
   double velocity_product = 0;  // m/s^2 or rad/s^2
   double drift = 0;             // m/s: what a belt on either side adds to J v
+  bool of_wheels = false;       // a gear's, of angles, though teeth push along
   // All sides of a mechanism, which may be those of many bodies; its a and b are the room, and `along` is how
   // a unit of its force is shown.
   std::vector<RowSide<D>> more;
@@ -39,6 +40,15 @@ struct Row {
     for (RowSide<D>& side : more) side.along *= -1, side.angular *= -1;
   }
 };
+
+/// Whether a row is one of turning, with J v in rad/s, not in m/s.
+template <int D>
+bool of_turning(const Row<D>& row) {
+  if (row.of_wheels) return true;
+  for (const RowSide<D>& side : row.more)
+    if (!side.along.isZero(0)) return false;
+  return row.along.isZero(0);
+}
 
 /// act(body, along, angular) for each side of a row that is a body, with its sign.
 template <int D, class Act>

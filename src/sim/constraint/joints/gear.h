@@ -106,7 +106,7 @@ void hold_ratio(const JointPose<D>& at, Row<D>* J, double* C) {
     teeth.value = (k == 0 ? 1 : -factors[1]) * own[k].along;
     teeth.rate = cross_velocity<D>(at.side(joints[std::size_t(k)].b.body).w, teeth.value);
   }
-  row.along = teeth.value;
+  row.along = teeth.value, row.of_wheels = !slides[0];
   for (int k = 0; k < 2; ++k) {
     const Joint<D>& joint = joints[std::size_t(k)];
     // what the teeth push at a pin

@@ -90,7 +90,8 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   // Start from the forces of the step before only if nearly all is at rest: with them the iterations would go
   // on holding bodies that have begun to fall.
   double fastest = 0;
-  for (int i = 0; i < int(rows_.size()); ++i) fastest = std::max(fastest, std::abs(row_velocity(i)));
+  for (int i = 0; i < int(rows_.size()); ++i)
+    fastest = std::max(fastest, in_metres(i, std::abs(row_velocity(i))));
   const auto& members = dynamics_.bodies();
   for (std::size_t i = 0; i < members.size(); ++i) {
     const int body = members[i];

@@ -148,9 +148,10 @@ void ExactSolver<D>::collect_constraints(const State<D>& state, double fastest, 
     Constraint constraint{};
     constraint.kind = kind, constraint.of = of;
     build_jacobian(constraint, turn);
-    const double speed = one_sided ? row_velocity(constraint.first) : 0;
+    const double speed = one_sided ? in_metres(constraint.first, row_velocity(constraint.first)) : 0;
     const bool comes = kind == Kind::contact && speed > -kComing * limits_.rest_speed;
-    const bool apart = one_sided && constraint.off > std::max(comes ? reach : 0, limits_.touching_gap);
+    const bool apart = one_sided && in_metres(constraint.first, constraint.off) >
+                                        std::max(comes ? reach : 0, limits_.touching_gap);
     if (!apart && (speed <= fastest || returns(constraint))) {
       constraints_.push_back(constraint);
       return;
@@ -224,7 +225,8 @@ void ExactSolver<D>::build_blocks(bool impulses, double last) {
         if (wire) constraint.grip = impulses && last == 0 ? 0 : joint.friction;
         const double most = by_load ? 0 : constraint.kind == Kind::motor ? joint.motor->most : joint.friction;
         const double slip =
-            row_velocity(constraint.first) - (constraint.kind == Kind::motor ? aim(constraint).speed : 0);
+            in_metres(constraint.first, row_velocity(constraint.first) -
+                                            (constraint.kind == Kind::motor ? aim(constraint).speed : 0));
         block.law = Law::bounded, block.upper = impulses ? last * most : most, block.lower = -block.upper;
         constraint.rubs = !by_load || impulses ? 0 : slip > still_speed_ ? 1 : slip < -still_speed_ ? -1 : 0;
         if (impulses) {
@@ -382,8 +384,8 @@ void ExactSolver<D>::collect_returning(const State<D>& state, double t) {
   const double soon = progress_.rest_speed * model_.scale / (limits_.unit_speed * limits_.unit_speed);
   for (const Constraint& constraint : leaving_) {
     const int row = constraint.first;
-    const double w = row_acceleration(row, scratch_.rate) + rows_[row].velocity_product;
-    const double v = row_velocity(row);
+    const double w = in_metres(row, row_acceleration(row, scratch_.rate) + rows_[row].velocity_product);
+    const double v = in_metres(row, row_velocity(row));
     if (v <= -w * soon || v * v <= -2 * w * kNowhere * model_.scale) returning_.push_back(constraint);
   }
   collect_constraints(state, limits_.least_speed);
@@ -423,7 +425,7 @@ double ExactSolver<D>::loads() const {
   for (const int body : active_.subset.bodies)
     sum += response_.moves(body) ? g / response_.inverse_mass(body) : 0;
   for (int i = 0; i < int(rows_.size()); ++i) {
-    if (const double k = self_coupling(i); k > 0) sum += std::fabs(b_[i]) / k;
+    if (const double k = self_coupling(i); k > 0) sum += in_newtons(i, std::fabs(b_[i]) / k);
   }
   return sum;
 }
@@ -508,7 +510,7 @@ void ExactSolver<D>::project_state(State<D>& state, double h, bool impacts_follo
       for (int i = 0; i < (constraint.kind == Kind::contact ? 1 : constraint.rows); ++i) {
         scratch_.chosen.push_back(constraint.first + i);
         b_[constraint.first + i] = -(constraint.kind == Kind::joint ? constraint.offs[i] : constraint.off);
-        worst = std::max(worst, std::abs(b_[constraint.first + i]));
+        worst = std::max(worst, in_metres(constraint.first + i, std::abs(b_[constraint.first + i])));
       }
     }
     return worst;
@@ -559,13 +561,13 @@ void ExactSolver<D>::project_state(State<D>& state, double h, bool impacts_follo
     for (int i = 0; i < n; ++i) {
       const int row = constraint.first + i;
       const double off = aim(constraint).speed - row_velocity(row);
-      if (constraint.kind == Kind::motor &&
-          std::abs(off) >
-              still_speed_ + kCarried * h * model_.joints[constraint.of].motor->most * self_coupling(row))
-        continue;
+      if (constraint.kind == Kind::motor) {
+        const double carried = kCarried * h * model_.joints[constraint.of].motor->most * self_coupling(row);
+        if (in_metres(row, std::abs(off) - carried) > still_speed_) continue;
+      }
       scratch_.chosen.push_back(row);
       b_[row] = off;
-      worst = std::max(worst, std::abs(b_[row]));
+      worst = std::max(worst, in_metres(row, std::abs(b_[row])));
     }
   }
   if (worst <= 1e-6 * still_speed_) return;

@@ -246,7 +246,9 @@ double ExactSolver<D>::time_to_aims(State<D>& state, double t, double h) {
   const auto slip = [&](const Constraint& constraint) {
     if (!is_bounded(constraint)) return 0.0;
     const ConeBlock<D>& block = blocks_[std::size_t(constraint.block)];
-    return block.lower == block.upper ? row_velocity(constraint.first) - aim(constraint).speed : 0.0;
+    return block.lower != block.upper
+               ? 0.0
+               : in_metres(constraint.first, row_velocity(constraint.first) - aim(constraint).speed);
   };
   if (std::none_of(constraints_.begin(), constraints_.end(),
                    [&](const Constraint& constraint) { return std::abs(slip(constraint)) > still_speed_; }))
@@ -259,19 +261,20 @@ double ExactSolver<D>::time_to_aims(State<D>& state, double t, double h) {
     const double fast = slip(constraint);
     if (std::abs(fast) <= still_speed_) continue;
     const int row = constraint.first;
-    const double gains = row_acceleration(row, ends) + rows_[row].velocity_product - aim(constraint).rate;
+    const double gains =
+        in_metres(row, row_acceleration(row, ends) + rows_[row].velocity_product - aim(constraint).rate);
     if (fast * gains < 0) h = std::min(h, std::max(kBeyondAim * std::abs(fast / gains), shortest));
   }
   return h;
 }
 
-// how far a motor, or the friction of a joint, still is from its aim, at the rows at hand, m/s or rad/s;
-// below 0 where it is past it
+// how far a motor, or the friction of a joint, still is from its aim, at the rows at hand, m/s; below 0 where
+// it is past it
 template <int D>
 double ExactSolver<D>::slip_left(const Constraint& constraint) {
   const double started = interval_.aims[std::size_t(&constraint - constraints_.data())];
   const double sign = interval_.velocities[constraint.first] > started ? 1 : -1;
-  return sign * (row_velocity(constraint.first) - aim(constraint).speed);
+  return sign * in_metres(constraint.first, row_velocity(constraint.first) - aim(constraint).speed);
 }
 
 // the part of the interval at which the first of what slides has stopped, by a straight line; and what slides
@@ -292,8 +295,9 @@ double ExactSolver<D>::stopping_time(const Constraint*& which) {
     } else if (is_bounded(constraint)) {
       const ConeBlock<D>& block = blocks_[constraint.block];
       if (block.lower != block.upper) continue;
-      begun = std::abs(interval_.velocities[constraint.first] -
-                       interval_.aims[std::size_t(&constraint - constraints_.data())]);
+      begun = in_metres(constraint.first,
+                        std::abs(interval_.velocities[constraint.first] -
+                                 interval_.aims[std::size_t(&constraint - constraints_.data())]));
       now = slip_left(constraint);
     } else {
       continue;
@@ -428,8 +432,9 @@ double ExactSolver<D>::tightening_time(const State<D>& state, double h, Couple& 
         if (shifts(body)) poses_[body] = pose_at(state, body, h, part);
       });
       build_jacobian(constraint, turn_between_at(state, model_.joints[joint], h, part));
+      const double off = in_metres(constraint.first, constraint.off);
       rows_.resize(rows);
-      return constraint.off;
+      return off;
     };
     double high = 1, at_high = left(1);
     const double before = first;

@@ -32,10 +32,10 @@ double ExactSolver<D>::closing_speed(const Constraint& constraint) const {
       return 0;
     case Constraint::Kind::joint:
       for (int i = 0; i < constraint.rows; ++i)
-        most = std::max(most, std::abs(row_velocity(constraint.first + i)));
+        most = std::max(most, in_metres(constraint.first + i, std::abs(row_velocity(constraint.first + i))));
       return most;
     default:
-      return std::max(0.0, -row_velocity(constraint.first));
+      return std::max(0.0, in_metres(constraint.first, -row_velocity(constraint.first)));
   }
 }
 
@@ -54,7 +54,9 @@ bool ExactSolver<D>::coming_apart() const {
     const bool one_sided = constraint.kind != Constraint::Kind::joint &&
                            constraint.kind != Constraint::Kind::motor &&
                            constraint.kind != Constraint::Kind::friction;
-    if (one_sided && active(constraint) && row_velocity(constraint.first) > still_speed_) return true;
+    if (one_sided && active(constraint) &&
+        in_metres(constraint.first, row_velocity(constraint.first)) > still_speed_)
+      return true;
   }
   return false;
 }

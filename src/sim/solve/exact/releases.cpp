@@ -124,7 +124,7 @@ double ExactSolver<D>::release_length(State<D>& state, double t, const Constrain
 }
 
 // What the laws, solved at the end of the interval, let go of that it held: the largest acceleration that
-// they give it, m/s^2 or rad/s^2; 0 where they let go of nothing, or have no solution. What is at hand of the
+// they give it, m/s^2; 0 where they let go of nothing, or have no solution. What is at hand of the
 // interval stays as it is.
 template <int D>
 double ExactSolver<D>::let_go_at(State<D>& state, double t) {
@@ -133,13 +133,13 @@ double ExactSolver<D>::let_go_at(State<D>& state, double t) {
   const auto mode_of = [&](const Constraint& one) { return interval_.modes[std::size_t(one.block)].kind; };
   double most = 0;
   for (int i = 0; i < int(rows_.size()); ++i)
-    most = std::max({most, std::abs(f_[i]), std::abs(interval_.forces[i])});
+    most = std::max({most, in_newtons(i, std::abs(f_[i])), in_newtons(i, std::abs(interval_.forces[i]))});
   // by how much a force is beyond its law
   const auto beyond = [&](const Constraint& one) {
     const double f = f_[one.first];
     const ConeBlock<D>& block = blocks_[one.block];
     if (one.kind == Kind::joint || !holds(one, mode_of(one))) return 0.0;
-    if (one.kind != Kind::contact) return std::max(f - block.upper, block.lower - f);
+    if (one.kind != Kind::contact) return in_newtons(one.first, std::max(f - block.upper, block.lower - f));
     const double drag = std::sqrt(f_.segment(one.first + 1, D - 1).squaredNorm());
     return std::max(-f, mode_of(one) == ModeKind::stick ? drag - block.mu * f : 0.0);
   };
@@ -171,8 +171,9 @@ double ExactSolver<D>::let_go_at(State<D>& state, double t) {
       if (one.kind == Kind::joint || !holds(one, mode_of(one)) || (holds(one, now) && !slips)) continue;
       for (int i = 0; i < one.rows; ++i) {
         const int row = one.first + i;
-        fastest = std::max(fastest, std::abs(row_acceleration(row, ends) + rows_[row].velocity_product -
-                                             (i == 0 ? aim(one).rate : 0)));
+        fastest = std::max(fastest,
+                           in_metres(row, std::abs(row_acceleration(row, ends) + rows_[row].velocity_product -
+                                                   (i == 0 ? aim(one).rate : 0))));
       }
     }
     if (fastest < kNoAcceleration * swiftest) fastest = 0;

@@ -16,10 +16,14 @@ namespace obscura::sim {
 template <int D>
 class InstantImpact {
  public:
-  /// The most contacts of one impact, and the most ends; so many of crowds; and so many that hang together
-  /// are solved so whatever they are.
-  static constexpr int kMost = D == 2 ? 40 : 16, kMostEnds = 16, kMostOfCrowds = 16,
-                       kFew = D == 2 ? 8 : kMost;
+  /// The most contacts of one impact, and the most ends; so many of crowds, of more than kCrowd bodies; and
+  /// so many that hang together are solved so whatever they are.
+  static constexpr int kMost = D == 2 ? 40 : 36, kMostEnds = 16, kMostOfCrowds = 16, kFew = D == 2 ? 8 : 16;
+  static constexpr int kCrowd = 50;
+
+  /// So many that hang together are solved so, of `bodies` in all: on joints more, which pair after pair each
+  /// blow would bend.
+  static constexpr int few(bool tied, int bodies) { return tied && bodies <= kCrowd ? kMost : kFew; }
 
   // with room for the most, so that no size allocates
   static constexpr int kMostRows = D * kMost + kMostEnds;

@@ -30,7 +30,8 @@ void JointSolver<D>::solve_positions() {
   for (std::size_t r = 0; r < rows_.size(); ++r) push(rows_[r], rhs_[r]);
 }
 
-// how far joints are off, at most; into rhs_ what would bring each row back
+// how far joints are off, at most, m, a radian as the size of the scene; into rhs_ what would bring each row
+// back
 template <int D>
 double JointSolver<D>::position_error() {
   double worst = 0;
@@ -43,7 +44,7 @@ double JointSolver<D>::position_error() {
     const int n = rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off, at_);
     for (int i = 0; i < n; ++i) {
       rhs_[factors_.first(k) + i] = -off[i];
-      worst = std::max(worst, std::fabs(off[i]));
+      worst = std::max(worst, std::fabs(off[i]) * (of_turning(out[i]) ? model_.scale : 1));
     }
   }
   return worst;
@@ -71,7 +72,7 @@ void JointSolver<D>::put_motors() {
     double value = 0;
     free_row(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), row, value);
     const double off = bounded.ends - value;
-    if (std::fabs(off) < kStride) shift_bounded(bounded, off * bounded.effective_mass);
+    if (std::fabs(off) < kStride * size(bounded.joint)) shift_bounded(bounded, off * bounded.effective_mass);
   }
 }
 
@@ -148,7 +149,7 @@ void JointSolver<D>::put_ends(double h, bool beyond) {
       double worst = 0;
       for (std::size_t p = 0; p < n; ++p) {
         offs_[p] = -left(together(p).joint, together(p).load);
-        worst = std::max(worst, std::fabs(offs_[p]));
+        worst = std::max(worst, std::fabs(offs_[p]) * in_metres(together(p).joint));
       }
       return worst;
     };
@@ -185,7 +186,7 @@ void JointSolver<D>::project_positions(double h) {
     const double before = bounded.put;
     if (holds) {
       shift_bounded(bounded, -off * bounded.effective_mass);
-      if (!near() || position_error() > strayed + std::fabs(off))
+      if (!near() || position_error() > strayed + std::fabs(off) * in_metres(bounded.joint))
         at_ = begun_at_, turn_ = begun_turn_, bounded.put = before;
       continue;
     }
@@ -193,7 +194,9 @@ void JointSolver<D>::project_positions(double h) {
     for (double fraction = 1; fraction > kLeastFraction; fraction /= 2) {
       shift_bounded(bounded, -fraction * off * bounded.effective_mass);
       const double rest = left(bounded.joint, bounded.load);
-      if (near() && rest > (1 - fraction / 4) * off && position_error() <= strayed - fraction * off) break;
+      if (near() && rest > (1 - fraction / 4) * off &&
+          position_error() <= strayed - fraction * off * in_metres(bounded.joint))
+        break;
       at_ = begun_at_, turn_ = begun_turn_;
     }
     // where it was far beyond its end it is put back, no more

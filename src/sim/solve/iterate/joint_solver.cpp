@@ -293,11 +293,27 @@ double JointSolver<D>::size(int joint) const {
   return equations<D>(model_.joints[std::size_t(joint)].kind).angle ? 1 : model_.scale;
 }
 
+// a unit of it as m: a radian as the size of the scene
+template <int D>
+double JointSolver<D>::in_metres(int joint) const {
+  return model_.scale / size(joint);
+}
+
+// What gravity can give a joint in a second, m/s or rad/s: of an angle by the longer arm of its two ends.
+template <int D>
+double JointSolver<D>::fall(int number) const {
+  const Joint<D>& joint = model_.joints[std::size_t(number)];
+  const double g = std::sqrt(model_.gravity.squaredNorm());
+  if (!equations<D>(joint.kind).angle) return g;
+  const double arm2 = std::max(joint.a.body < 0 ? 0 : joint.a.local.squaredNorm(),
+                               joint.b.body < 0 ? 0 : joint.b.local.squaredNorm());
+  return arm2 > 0 ? g / std::sqrt(arm2) : g / model_.scale;
+}
+
 // rows with bounds, of limits and ropes those that may come to their end in the step
 template <int D>
 void JointSolver<D>::collect_bounded(double h) {
   active_ = 0;
-  const double g = std::sqrt(model_.gravity.squaredNorm());
   const auto add = [&](int i, Load load) {
     const Joint<D>& joint = model_.joints[i];
     if (active_ == bounded_.size()) bounded_.emplace_back();
@@ -323,7 +339,7 @@ void JointSolver<D>::collect_bounded(double h) {
                  before = after * hold.given[load];
     if (load == lower || load == upper) {
       const double off = left(i, load);
-      const double sees = 4 * h * (std::fabs(speed(b.row, at_)) + g * h) + 1e-3 * model_.scale;
+      const double sees = 4 * h * (std::fabs(speed(b.row, at_)) + fall(i) * h) + 1e-3 * size(i);
       if (off > sees) return;
       b.least = -std::max(before, 0.0), b.most = kEndless,
       b.target = -std::max(off, 0.0) / h + hold.bends[load];
@@ -467,7 +483,8 @@ bool JointSolver<D>::project_initial_velocities(State<D>& state) {
   }
   compute_rows();
   double fastest = 0;
-  for (const Row<D>& row : rows_) fastest = std::max(fastest, std::fabs(speed(row, at_)));
+  for (const Row<D>& row : rows_)
+    fastest = std::max(fastest, std::fabs(speed(row, at_)) * (of_turning(row) ? model_.scale : 1));
   if (fastest <= kApart * model_.scale) return false;
   for (int round = 0; round < 2; ++round) solve_positions();  // the second for the rounding of the first
   for (const int i : bodies_) {

@@ -303,7 +303,7 @@ bool JointSolver<D>::overrun(double t) {
 // m/s or rad/s: no faster comes to its end what only falls there
 template <int D>
 double JointSolver<D>::slow_end(int joint) const {
-  return kSlower * span_ * std::sqrt(model_.gravity.squaredNorm()) + kTaut * size(joint) / span_;
+  return kSlower * span_ * fall(joint) + kTaut * size(joint) / span_;
 }
 
 // of those, how far the farthest is from its end, in its size
@@ -324,7 +324,8 @@ bool JointSolver<D>::drop_puller() {
   int worst = -1;
   for (const int k : bounded_blocks_) {
     const Load load = acting_[std::size_t(k)].load;
-    const double f = rhs_[std::size_t(bounded_row(k))];
+    // a torque as a force on the size of the scene
+    const double f = rhs_[std::size_t(bounded_row(k))] / in_metres(held_[std::size_t(k)]);
     if ((load == lower || load == upper) && f < least) least = f, worst = k;
   }
   if (worst >= 0) acting_[std::size_t(worst)].load = none;

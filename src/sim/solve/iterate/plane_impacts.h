@@ -145,6 +145,7 @@ class Impacts {
   bool grow_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step);
   bool near_at(const Pair& pair, int body, double when, const Step& step) const;
   bool knows(int pair) const;
+  static bool on_joints(int body, const Step& step);
   const Pair& pair_of(int touch, const Step& step) const;
   const Push& push_of(int row) const;
   std::array<StruckSide, 2> sides(int row, const std::vector<ContactBatch>& batches, const Step& step) const;

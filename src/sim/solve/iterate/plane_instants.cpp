@@ -14,7 +14,6 @@ namespace obscura::sim::plane {
 namespace {
 
 constexpr int kMostInstants = 2000;  // of a substep: what is squeezed has no end of them
-constexpr int kCrowd = 50;           // bodies: of more, blows reach less far in one instant
 constexpr double kStill = 1e-9;      // of how fast an instant's touches close: what is left as it is
 
 }  // namespace
@@ -34,6 +33,11 @@ bool Impacts::near_at(const Pair& pair, int body, double when, const Step& step)
   const auto [px, py] = place_at(beside, when, step);
   const double both = (1 + kTogether) * (bounding_radius_[body] + bounding_radius_[beside]);
   return (x - px) * (x - px) + (y - py) * (y - py) <= both * both;
+}
+
+bool Impacts::on_joints(int body, const Step& step) {
+  return body >= 0 && !step.joints.empty() &&
+         (step.joints.has(body) || step.struck_joints.component(body) >= 0);
 }
 
 bool Impacts::knows(int pair) const {
@@ -70,11 +74,14 @@ bool Impacts::meets_at(const Pair& pair, double when, const ContactBatch& g, con
 bool Impacts::gather_instant(const Impact& first, const std::vector<ContactBatch>& batches,
                              const Step& step) {
   meetings_.assign(1, {first, {}, {}, false}), closed_.clear();
-  bool few = true;
+  const int room = int(now_.size()) - 1;
+  bool few = true, tied = false;
   const auto list = [&](int number) {
     for (int k = 0; k < 2; ++k)
       if (meetings_[number].impact.met[k]) closed_.emplace_back(number, k);
-    few = int(closed_.size()) <= InstantImpact<2>::kFew;
+    const Pair& its = step.pairs[meetings_[number].impact.pair];
+    tied = tied || on_joints(its.a, step) || on_joints(its.b, step);
+    few = int(closed_.size()) <= InstantImpact<2>::few(tied, room);
   };
   list(0);
   for (int m = 0; few && m < int(meetings_.size()); ++m) {
@@ -201,15 +208,12 @@ bool Impacts::grow_instant(const Impact& first, const std::vector<ContactBatch>&
   const Pair& its = step.pairs[first.pair];
   if (!(its.material.elasticity > kBounces)) return false;
   const int room = int(now_.size()) - 1;
-  const int most = room <= kCrowd ? InstantImpact<2>::kMost : InstantImpact<2>::kMostOfCrowds;
+  const int most =
+      room <= InstantImpact<2>::kCrowd ? InstantImpact<2>::kMost : InstantImpact<2>::kMostOfCrowds;
   Pose ignored;
   move(its.a, first.when, step, ignored, meetings_[0].a);
   move(its.b >= 0 ? its.b : room, first.when, step, ignored, meetings_[0].b);
-  const auto tied = [&](int body) {
-    return body >= 0 && !step.joints.empty() &&
-           (step.joints.has(body) || step.struck_joints.component(body) >= 0);
-  };
-  if (tied(its.a) || tied(its.b)) return false;
+  if (on_joints(its.a, step) || on_joints(its.b, step)) return false;
   for (std::size_t known = 0; known < meetings_.size();) {
     known = meetings_.size();
     couple_instant(batches, step, false);
@@ -249,7 +253,7 @@ bool Impacts::grow_instant(const Impact& first, const std::vector<ContactBatch>&
                    speed(push, meeting.a, meeting.b) + speed(push, a, b) < -kStill * fastest;
           };
           if (!closes(0) && !closes(1)) continue;
-          if (tied(other.a) || tied(other.b)) return false;
+          if (on_joints(other.a, step) || on_joints(other.b, step)) return false;
           meetings_.push_back(meeting);
           for (int k = 0; k < 2; ++k)
             if (meeting.impact.met[k]) closed_.emplace_back(int(meetings_.size()) - 1, k);

@@ -218,6 +218,7 @@ class SpaceIterative final : public Iterative<3> {
                                 const Vec<D>& arm_b) const;
   void couple_rows(Eigen::Ref<Eigen::MatrixXd> K) const;
   void place_joints(int body, double t, double h);
+  bool on_joints(const ContactConstraint& touch) const;
   bool locked(const ContactConstraint& touch);
   void build_impact_rows(double t, double h);
   bool solve_impact(double t, double h, std::vector<double>& work);

@@ -33,13 +33,19 @@ bool SpaceIterative::closed(int touch, double bounding_radius, double t, double 
   return gap <= closed_up_to(bounding_radius, least);
 }
 
+// whether joints hold a body of a touch
+bool SpaceIterative::on_joints(const ContactConstraint& touch) const {
+  return joints_.component(touch.a) >= 0 ||
+         (touch.b < int(model_.bodies.size()) && joints_.component(touch.b) >= 0);
+}
+
 // what meets with a gap at a time, through gaps that are closed: those of its pair alone, if pairs are struck
 // one after another; false where that is not for here
 bool SpaceIterative::gather_impact(int first, double t, double h) {
   meets_.assign(1, first);
   const ContactKey pair = touches_[first].key;
   const bool alone = model_.impacts == Impacts::sequential;
-  bool few = true;
+  bool few = true, tied = on_joints(touches_[first]);
   for (std::size_t k = 0; few && k < meets_.size(); ++k) {
     for (const int side : {touches_[meets_[k]].a, touches_[meets_[k]].b}) {
       each_tied(side, [&](int body) {
@@ -49,7 +55,8 @@ bool SpaceIterative::gather_impact(int first, double t, double h) {
           if (alone && (key.a != pair.a || key.b != pair.b)) continue;
           if (std::find(meets_.begin(), meets_.end(), other) != meets_.end()) continue;
           if (!closed(other, bounding_radius_[body], t, h)) continue;
-          few = int(meets_.size()) < InstantImpact<D>::kFew;
+          tied = tied || on_joints(touches_[other]);
+          few = int(meets_.size()) < InstantImpact<D>::few(tied, int(model_.bodies.size()));
           if (few) meets_.push_back(other);
         }
       });
@@ -175,12 +182,8 @@ void SpaceIterative::build_impact_rows(double t, double h) {
 // all that meets at a time, at once; false where no impulses were found
 bool SpaceIterative::solve_impact(double t, double h, std::vector<double>& work) {
   // what joints leave nothing to move meets nothing
-  const auto tied = [&](int body) {
-    return body < int(model_.bodies.size()) && joints_.component(body) >= 0;
-  };
   if (!joints_.empty()) {
-    std::erase_if(meets_,
-                  [&](int i) { return (tied(touches_[i].a) || tied(touches_[i].b)) && locked(touches_[i]); });
+    std::erase_if(meets_, [&](int i) { return on_joints(touches_[i]) && locked(touches_[i]); });
     if (meets_.empty()) return false;
   }
   build_impact_rows(t, h);
