@@ -932,5 +932,132 @@ TEST(Impacts, BoxesInSpaceThatTurnIntoEachOtherPartAsByEvents) {
   }
 }
 
+// A blow goes through a row of balls that do not touch, one after another within a step, however long it is.
+TEST(Impacts, PassThroughARowOfAnyLength) {
+  for (const int dimension : {2, 3}) {
+    for (const Manner& manner : kManners) {
+      for (const int rate : {60, 600}) {
+        SCOPED_TRACE(fmt::format("{}D by {} at {}", dimension, manner.name, rate));
+        const std::string z = dimension == 2 ? "" : ", 0";
+        std::string text = fmt::format(
+            "duration = 1\n[room]\nwalls = \"none\"\nsize = [20, 4{}]\ngravity = [0, 0{}]\n{}\nrate = {}\n",
+            dimension == 2 ? "" : ", 4", z, manner.keys, rate);
+        for (int i = 0; i < 16; ++i)
+          text += fmt::format(
+              "[[ball]]\nradius = 0.1\nmass = 1\nelasticity = 1\nfriction = 0\nposition = [{}, "
+              "2{}]\nvelocity "
+              "= [{}, 0{}]\n",
+              i == 0 ? 1.5 : 2 + 0.2001 * i, z, i == 0 ? 2 : 0, z);
+        const TextRun run(text);
+        const sim::Snapshot end = run.at(0.9);
+        for (std::size_t i = 0; i < end.bodies.size(); ++i)
+          EXPECT_NEAR(end.bodies[i].velocity.x(), i + 1 == end.bodies.size() ? 2 : 0, 1e-9) << i;
+      }
+    }
+  }
+}
+
+// Balls of clay that meet a plank side by side go on with it as one: v = -3 n / (n + 5), and it does not
+// turn.
+TEST(Impacts, ClayThatMeetsAPlankAllAtOnceGoesOnAsOne) {
+  for (const Manner& manner : kManners) {
+    for (const int n : {8, 9, 20}) {
+      for (const int rate : {60, 600}) {
+        SCOPED_TRACE(fmt::format("{} balls by {} at {}", n, manner.name, rate));
+        std::string text = fmt::format(
+            "duration = 1\n[room]\nwalls = \"none\"\nsize = [20, 10]\ngravity = [0, 0]\n{}\nrate = "
+            "{}\n[[box]]\n"
+            "size = [{}, 0.2]\nposition = [10, 5]\nmass = 5\nelasticity = 0\nfriction = 0\n",
+            manner.keys, rate, 0.3 * n + 0.2);
+        for (int i = 0; i < n; ++i)
+          text += fmt::format(
+              "[[ball]]\nradius = 0.1\nmass = 1\nelasticity = 0\nfriction = 0\nposition = [{}, "
+              "6.21]\nvelocity = [0, "
+              "-3]\n",
+              10 + 0.3 * (i - 0.5 * (n - 1)));
+        const TextRun run(text);
+        const sim::Snapshot end = run.at(0.6);
+        for (const sim::Snapshot::Body& it : end.bodies) {
+          EXPECT_NEAR(it.velocity.y(), -3.0 * n / (n + 5), 1e-9);
+          EXPECT_NEAR(it.spin.z(), 0, 1e-9);
+        }
+      }
+    }
+  }
+}
+
+// Three courses of two bricks fall flat onto the floor, in no order: all of them leave it as fast as they
+// came.
+TEST(Impacts, AWallThatFallsFlatBouncesFlat) {
+  for (const Manner& manner : kManners) {
+    for (const int rate : {60, 600}) {
+      SCOPED_TRACE(fmt::format("by {} at {}", manner.name, rate));
+      std::string text = fmt::format(
+          "duration = 1\n[room]\nwalls = \"ground\"\nsize = [40, 20]\n{}\nrate = {}\n", manner.keys, rate);
+      for (int course = 0; course < 3; ++course)
+        for (const int brick : {1, 0})
+          text += fmt::format(
+              "[[box]]\nsize = [0.45, 0.25]\nmass = 1\nelasticity = 1\nfriction = 0\nposition = [{}, {}]\n",
+              20 + 0.5 * brick + (course == 1 ? 0.2 : 0), 1.025 + 0.25 * course);
+      const TextRun run(text);
+      const double falls = std::sqrt(2 * 9.81 * 0.9), t = 0.46;
+      const sim::Snapshot end = run.at(t);
+      for (const sim::Snapshot::Body& it : end.bodies)
+        EXPECT_NEAR(it.velocity.y(), falls - 9.81 * (t - falls / 9.81), 1e-7);  // met within 2e-8 m
+    }
+  }
+}
+
+// Five boxes welded in a row, whatever else the room has far away.
+TEST(Impacts, OfAWeldedRowAreThoseOfOneBodyInACrowdToo) {
+  for (const Manner& manner : kManners) {
+    if (manner.name == "event") continue;
+    for (const int rate : {60, 600}) {
+      SCOPED_TRACE(fmt::format("by {} at {}", manner.name, rate));
+      std::string text = fmt::format(
+          "duration = 1\n[room]\nwalls = \"ground\"\nsize = [40, 20]\n{}\nrate = {}\n", manner.keys, rate);
+      for (int i = 0; i < 5; ++i)
+        text += fmt::format(
+            "[[box]]\nname = \"b{}\"\nsize = [0.5, 0.25]\nmass = 1\nelasticity = 0.5\nfriction = 0\nposition "
+            "= [{}, "
+            "1.025]\n{}",
+            i, 20 + 0.5 * i,
+            i == 0
+                ? ""
+                : fmt::format("[[joint]]\ntype = \"weld\"\nbetween = [\"b{}\", \"b{}\"]\nat = [{}, 1.025]\n",
+                              i - 1, i, 19.75 + 0.5 * i));
+      for (int i = 0; i < 60; ++i)
+        text += fmt::format("[[ball]]\nradius = 0.05\nposition = [{}, 15]\n", 2 + 0.2 * i);
+      const TextRun run(text);
+      const double falls = std::sqrt(2 * 9.81 * 0.9), t = 0.46;
+      const sim::Snapshot end = run.at(t);
+      for (int i = 0; i < 5; ++i)
+        EXPECT_NEAR(end.bodies[number_of(run, fmt::format("b{}", i))].velocity.y(),
+                    0.5 * falls - 9.81 * (t - falls / 9.81), 1e-7);
+    }
+  }
+}
+
+// A rope in space that becomes taut is stopped at its time, whatever else the room has far away.
+TEST(Impacts, OfARopeInSpaceDoNotDependOnWhatElseThereIs) {
+  const auto run_with = [](int others) {
+    std::string text =
+        "duration = 1\n[room]\nwalls = \"ground\"\nsize = [60, 20, 40]\ncorner = [0, 0, "
+        "-20]\n[physics]\nsolver = "
+        "\"iterative\"\nrate = 600\n[[box]]\nname = \"a\"\nsize = [0.3, 0.3, 0.3]\nposition = [10, 3, "
+        "0]\nvelocity "
+        "= [2, 1, 0]\n[[joint]]\ntype = \"rope\"\nbetween = [[9.5, 3.5, 0], { body = \"a\", local = [0.15, "
+        "0.15, 0] "
+        "}]\nlength = 1\n";
+    for (int i = 0; i < others; ++i)
+      text += fmt::format("[[ball]]\nradius = 0.05\nposition = [{}, 15, 0]\n", 2 + 0.2 * i);
+    const TextRun run(text);
+    return run.at(0.7).bodies[number_of(run, "a")];
+  };
+  const sim::Snapshot::Body alone = run_with(0), beside = run_with(60);
+  EXPECT_NEAR((alone.velocity - beside.velocity).norm(), 0, 1e-9);
+  EXPECT_NEAR((alone.position - beside.position).norm(), 0, 1e-9);
+}
+
 }  // namespace
 }  // namespace obscura::scene

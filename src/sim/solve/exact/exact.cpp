@@ -30,7 +30,6 @@ constexpr double kTiny = 1e-6;       // of a step: a cut that leads nowhere
 constexpr int kStuck = 16;           // such cuts, one after another
 constexpr int kThorough = 32;        // steps: in each such one what is not found is looked for everywhere
 constexpr double kManyLooks = 3e5;   // at couples, before a step is
-constexpr int kMostRounds = 8;       // of stepping again what got farther than expected
 // of a step, by a body that meets walls alone: a bounce takes microseconds
 constexpr int kMostLoneCuts = 50000;
 // by one of a few, to which each is cheap: rest grows with them, so that what bounces ever faster comes to an
@@ -199,10 +198,12 @@ bool ExactSolver<D>::collide(StepPart<D> step) {
 template <int D>
 void ExactSolver<D>::advance(StepPart<D> step) {
   State<D>& state = step.state;
-  for (int round = 0; round < kMostRounds; ++round) {
-    // bodies that got farther than expected, into the reach of others, are stepped again together with them
+  // Bodies that got farther than expected, into the reach of others, are stepped again together with them: of
+  // a row, through which a blow goes, one more each time. Groups only grow, so it comes to an end.
+  bool any = true;
+  for (int round = 0; any; ++round) {
     join_near_bodies();
-    bool any = false;
+    any = false;
     list_groups(state);
     for (const Group& group : step_.groups) {
       bool known = step_.old_root[group.root] == group.root;
@@ -227,7 +228,6 @@ void ExactSolver<D>::advance(StepPart<D> step) {
       step_.contacts.insert(step_.contacts.end(), outcome_.contacts.begin(), outcome_.contacts.end());
       step_.impulses.insert(step_.impulses.end(), outcome_.impulses.begin(), outcome_.impulses.end());
     }
-    if (!any) break;
   }
   if (state.work.empty()) return;
   for (const double given : step_.given) state.work[0] += given;

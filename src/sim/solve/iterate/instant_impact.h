@@ -17,12 +17,12 @@ template <int D>
 class InstantImpact {
  public:
   /// The most contacts of one impact, and the most ends; so many of crowds, of more than kCrowd bodies; and
-  /// so many that hang together are solved so whatever they are.
-  static constexpr int kMost = D == 2 ? 40 : 36, kMostEnds = 16, kMostOfCrowds = 16, kFew = D == 2 ? 8 : 16;
+  /// so many that hang together are solved so whatever they cost.
+  static constexpr int kMost = D == 2 ? 55 : 36, kMostEnds = 16, kMostOfCrowds = 16, kFew = D == 2 ? 8 : 16;
   static constexpr int kCrowd = 50;
 
-  /// So many that hang together are solved so, of `bodies` in all: on joints more, which pair after pair each
-  /// blow would bend.
+  /// So many that hang together are solved so whatever strikes, of `bodies` in all: more of what is on
+  /// joints, which blows pair after pair would bend.
   static constexpr int few(bool tied, int bodies) { return tied && bodies <= kCrowd ? kMost : kFew; }
 
   // with room for the most, so that no size allocates

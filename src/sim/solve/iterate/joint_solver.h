@@ -349,7 +349,8 @@ class JointSolver final : public System {
   void begin_motors();
   void end_motors();
   bool has_speed(int joint, double rate, double aimed, double h) const {
-    return std::fabs(rate - aimed) <= kAims * (std::fabs(aimed) + size(joint) * h * h) + kArrives * size(joint);
+    return std::fabs(rate - aimed) <=
+           kAims * (std::fabs(aimed) + size(joint) * h * h) + kArrives * size(joint);
   }
   void free_row_of(int joint, Row<D>& row, double& value) const {
     const Joint<D>& it = model_.joints[std::size_t(joint)];

@@ -87,7 +87,7 @@ double JointSolver<D>::step(ForwardDynamics<D>& dynamics, Integrate* integrate, 
       step_free(from, span);
     }
     set_poses(state, t + h);
-    if (strikes == kMostStrikes || int(dynamics.bodies().size()) > kMostStopped || !overrun(t + h)) break;
+    if (strikes == kMostStrikes || int(bodies_.size()) > kMostStopped || !overrun(t + h)) break;
 
     double at_low = kEndless, until = span;
     bool stops = false;

@@ -392,7 +392,7 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
                  const StepConstants& pace, JointSolver<2>& joints, JointSolver<2>& struck_joints) {
   for (const int body : bodies_) when_[body] = first_[body] = -1, rounds_[body] = 0;
   for (const int body : crowd_) crowded_[body] = 0;
-  crowd_.clear(), instants_ = 0;
+  crowd_.clear(), instants_ = 0, spent_ = 0;
   for (const Impact& impact : impacts_) {
     if (impact.pair < int(impacts_of_.size())) impacts_of_[impact.pair] = 0;
   }

@@ -145,6 +145,7 @@ class Impacts {
   bool grow_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step);
   bool near_at(const Pair& pair, int body, double when, const Step& step) const;
   bool knows(int pair) const;
+  int most_together() const;
   static bool on_joints(int body, const Step& step);
   const Pair& pair_of(int touch, const Step& step) const;
   const Push& push_of(int row) const;
@@ -217,6 +218,7 @@ class Impacts {
   JointSolver<2>::JointResponse responses_[2][2];  // of normals, and of tangents
   bool together_ = true;
   int instants_ = 0;                         // of this substep
+  int spent_ = 0;                            // on large ones of these
   std::vector<char> crowded_;                // of bodies: their impacts go pair after pair in this substep
   std::vector<int> crowd_;                   // these
   std::vector<Meeting> meetings_;            // in one instant, the first that was found first

@@ -14,7 +14,10 @@ namespace obscura::sim::plane {
 namespace {
 
 constexpr int kMostInstants = 2000;  // of a substep: what is squeezed has no end of them
-constexpr double kStill = 1e-9;      // of how fast an instant's touches close: what is left as it is
+constexpr double kAtOnce = 0.5;      // of an impact's speed: another that closes so fast is one at once
+constexpr int kSpent = 16000;        // of a substep: the squares of the touches of large instants
+constexpr int kSpentOfCrowds = 6000;
+constexpr double kStill = 1e-9;  // of how fast an instant's touches close: what is left as it is
 
 }  // namespace
 
@@ -69,19 +72,24 @@ bool Impacts::meets_at(const Pair& pair, double when, const ContactBatch& g, con
   return any;
 }
 
+// how many touches that hang together are solved together, where several strike
+int Impacts::most_together() const {
+  using All = InstantImpact<2>;
+  const bool crowd = int(now_.size()) - 1 > All::kCrowd;
+  if (spent_ > (crowd ? kSpentOfCrowds : kSpent)) return All::kFew;
+  return crowd ? All::kMostOfCrowds : All::kMost;
+}
+
 // What hangs together with an impact through touches that are closed then, into meetings_ and closed_. False
 // where that is more than few.
 bool Impacts::gather_instant(const Impact& first, const std::vector<ContactBatch>& batches,
                              const Step& step) {
   meetings_.assign(1, {first, {}, {}, false}), closed_.clear();
-  const int room = int(now_.size()) - 1;
-  bool few = true, tied = false;
+  bool few = true;
   const auto list = [&](int number) {
     for (int k = 0; k < 2; ++k)
       if (meetings_[number].impact.met[k]) closed_.emplace_back(number, k);
-    const Pair& its = step.pairs[meetings_[number].impact.pair];
-    tied = tied || on_joints(its.a, step) || on_joints(its.b, step);
-    few = int(closed_.size()) <= InstantImpact<2>::few(tied, room);
+    few = int(closed_.size()) <= most_together();
   };
   list(0);
   for (int m = 0; few && m < int(meetings_.size()); ++m) {
@@ -102,7 +110,11 @@ bool Impacts::gather_instant(const Impact& first, const std::vector<ContactBatch
       });
     }
   }
-  return few;
+  // what falls flat strikes with several of its bodies at once; in heaps a blow is one of a pair, and what
+  // else touches rests
+  const auto strikes = [&](const Meeting& it) { return it.impact.speed > kAtOnce * first.speed; };
+  return few && (int(closed_.size()) <= InstantImpact<2>::kFew ||
+                 std::count_if(meetings_.begin(), meetings_.end(), strikes) > 1);
 }
 
 // an impact alone, into meetings_ and closed_
@@ -306,6 +318,7 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     couple_instant(batches, step, tied);
     if (tied) ends_.couple(joints, std::span(instant_responses_).first(std::size_t(rows)), instant_);
     ++instants_;
+    if (count > InstantImpact<2>::kFew) spent_ += count * count;
     if (!instant_.solve()) return false;
   }
 
