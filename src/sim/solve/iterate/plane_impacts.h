@@ -145,6 +145,7 @@ class Impacts {
   bool grow_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step);
   bool near_at(const Pair& pair, int body, double when, const Step& step) const;
   bool knows(int pair) const;
+  bool crowd() const;
   int most_together() const;
   static bool on_joints(int body, const Step& step);
   const Pair& pair_of(int touch, const Step& step) const;

@@ -72,12 +72,11 @@ bool Impacts::meets_at(const Pair& pair, double when, const ContactBatch& g, con
   return any;
 }
 
-// how many touches that hang together are solved together, where several strike
+bool Impacts::crowd() const { return int(now_.size()) - 1 > InstantImpact<2>::kCrowd; }
+
+// how many touches are solved together at most
 int Impacts::most_together() const {
-  using All = InstantImpact<2>;
-  const bool crowd = int(now_.size()) - 1 > All::kCrowd;
-  if (spent_ > (crowd ? kSpentOfCrowds : kSpent)) return All::kFew;
-  return crowd ? All::kMostOfCrowds : All::kMost;
+  return crowd() ? InstantImpact<2>::kMostOfCrowds : InstantImpact<2>::kMost;
 }
 
 // What hangs together with an impact through touches that are closed then, into meetings_ and closed_. False
@@ -86,10 +85,11 @@ bool Impacts::gather_instant(const Impact& first, const std::vector<ContactBatch
                              const Step& step) {
   meetings_.assign(1, {first, {}, {}, false}), closed_.clear();
   bool few = true;
+  const int most = spent_ > (crowd() ? kSpentOfCrowds : kSpent) ? InstantImpact<2>::kFew : most_together();
   const auto list = [&](int number) {
     for (int k = 0; k < 2; ++k)
       if (meetings_[number].impact.met[k]) closed_.emplace_back(number, k);
-    few = int(closed_.size()) <= most_together();
+    few = int(closed_.size()) <= most;
   };
   list(0);
   for (int m = 0; few && m < int(meetings_.size()); ++m) {
@@ -220,8 +220,7 @@ bool Impacts::grow_instant(const Impact& first, const std::vector<ContactBatch>&
   const Pair& its = step.pairs[first.pair];
   if (!(its.material.elasticity > kBounces)) return false;
   const int room = int(now_.size()) - 1;
-  const int most =
-      room <= InstantImpact<2>::kCrowd ? InstantImpact<2>::kMost : InstantImpact<2>::kMostOfCrowds;
+  const int most = most_together();
   Pose ignored;
   move(its.a, first.when, step, ignored, meetings_[0].a);
   move(its.b >= 0 ? its.b : room, first.when, step, ignored, meetings_[0].b);
