@@ -49,6 +49,34 @@ TEST_F(Describe, SaysWhatHitsWhatWhenAndHowFast) {
   EXPECT_EQ(run.out.find("hits the floor"), run.out.rfind("hits the floor"));
 }
 
+// bodies that an event joins are joined when it happens, at 0.25 s, not where the step of 0.1 s ends
+TEST_F(Describe, TellsWhenBodiesAreJoined) {
+  scene(R"toml(duration = 1
+[room]
+size = [8, 4]
+walls = "none"
+gravity = [0, 0]
+[physics]
+rate = 10
+collision = "event"
+[[ball]]
+name = "bullet"
+radius = 0.1
+position = [1, 2]
+velocity = [4, 0]
+[[ball]]
+name = "block"
+radius = 0.1
+position = [2.2, 2]
+[[when]]
+touches = ["bullet", "block"]
+do = [{ stick = true }]
+)toml");
+  const Outcome run = obscura("describe scene.toml");
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("At 0.25 s the bullet and the block are joined."));
+}
+
 // a push there and back leaves the energy as it was, but not in between
 TEST_F(Describe, TellsOfEnergyThatComesAndGoes) {
   scene(R"toml(duration = 2

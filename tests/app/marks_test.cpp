@@ -235,7 +235,8 @@ void walk(const std::string& name, const std::vector<std::string>& sets = {}) {
     }
     // alike ones in their order, where there are as many as before
     std::map<std::string, std::vector<draw::Point>> words;
-    for (const draw::Text& text : list.texts) words[said(text).substr(0, 3)].push_back(text.at + draw::Point(width_of(text) / 2, 0));
+    for (const draw::Text& text : list.texts)
+      words[said(text).substr(0, 3)].push_back(text.at + draw::Point(width_of(text) / 2, 0));
     for (const auto& [letters, places] : words) {
       const std::vector<draw::Point>& then = before[letters];
       if (then.size() != places.size() || anchors.size() != anchors_before.size()) continue;
@@ -775,6 +776,19 @@ TEST_F(MarkedFilm, TellsWhichArrowIsNeverSeen) {
   EXPECT_THAT(run.err, Not(HasSubstr("'f'")));
   EXPECT_THAT(run.err, Not(HasSubstr("'G'")));
   EXPECT_THAT(run.err, Not(HasSubstr("of the picture's height")));
+}
+
+/// The more it is missing, the less should that be passed over.
+TEST_F(MarkedFilm, TellsOfAnArrowThatIsAThousandTimesTooShort) {
+  scene(
+      "duration = 0.2\n[room]\nsize = [4, 3]\n[[box]]\nname = \"crate\"\nsize = [0.4, 0.3]\nmass = 0.1\n"
+      "position = [1, 0.15]\n[[ball]]\nname = \"ball\"\nradius = 0.3\nmass = 100\nposition = [3, 0.3]\n"
+      "[[film.vector]]\nquantity = \"weight\"\nof = \"crate\"\nlabel = \"W_1\"\n"
+      "[[film.vector]]\nquantity = \"weight\"\nof = \"ball\"\nlabel = \"W_2\"\n");
+  const Outcome run = obscura("render scene.toml --at 0.1 --size 320x180 -o a.png");
+  EXPECT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("the arrow 'W_1' is never long enough"));
+  EXPECT_THAT(run.err, Not(HasSubstr("'W_2'")));
 }
 
 /// What only rounds to something is not there: nothing is said of a box that rests, nor of a run in space.

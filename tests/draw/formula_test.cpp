@@ -116,6 +116,18 @@ TEST(Formula, BetweenDollarsItIsAsInLatex) {
   EXPECT_EQ(set("$\\sin\\theta$")[0].second, math);
 }
 
+TEST(Formula, ARaisedDigitIsAScript) {
+  for (const auto& [sign, script] : {std::pair("5 m/s²", "5 m/s^2"), std::pair("x³ y", "x^3 y")}) {
+    const Formula raised = formula(sign, 10, {}), typed = formula(script, 10, {});
+    ASSERT_EQ(raised.spans.size(), typed.spans.size()) << sign;
+    for (std::size_t i = 0; i < typed.spans.size(); ++i) {
+      EXPECT_EQ(raised.spans[i].text, typed.spans[i].text);
+      EXPECT_EQ(raised.spans[i].size, typed.spans[i].size);
+      EXPECT_EQ(raised.spans[i].rise, typed.spans[i].rise);
+    }
+  }
+}
+
 TEST(Formula, AnUnknownCommandIsToldWithItsColumn) {
   EXPECT_FALSE(mistake("\\frac{\\omega^2}{\\sqrt[3]{2}} \\hat n \\, \\text{a}"));
   EXPECT_FALSE(mistake("\"a \\b\""));

@@ -50,6 +50,13 @@ bool of_turning(const Row<D>& row) {
   return row.along.isZero(0);
 }
 
+/// What a unit of J v, or of a row's error, counts as in metres where rows are compared: a radian as much as
+/// the size of the scene, `scale` (m). So a room of other lengths is the same run.
+template <int D>
+double in_metres(const Row<D>& row, double scale) {
+  return of_turning(row) ? scale : 1;
+}
+
 /// act(body, along, angular) for each side of a row that is a body, with its sign.
 template <int D, class Act>
 void each_side(const Row<D>& row, Act&& act) {

@@ -309,13 +309,12 @@ class ExactSolver final : public ContactSolver<D>, private System {
     return holds(constraint, modes_[std::size_t(constraint.block)].kind);
   }
   double row_velocity(int row) const;
-  // a way, speed or acceleration of a row, and a force or impulse, where rows are compared: of a row of
-  // turning on the size of the scene, so that a room of other lengths is the same run
+  // a way, speed or acceleration of a row, and a force or impulse, where rows are compared
   double in_metres(int row, double x) const {
-    return of_turning(rows_[std::size_t(row)]) ? model_.scale * x : x;
+    return x * sim::in_metres(rows_[std::size_t(row)], model_.scale);
   }
   double in_newtons(int row, double f) const {
-    return of_turning(rows_[std::size_t(row)]) ? f / model_.scale : f;
+    return f / sim::in_metres(rows_[std::size_t(row)], model_.scale);
   }
   double row_acceleration(int row, std::span<const double> rate) const;
   void add_accelerations(int row, double f, std::span<double> rate) const;

@@ -44,7 +44,7 @@ double JointSolver<D>::position_error() {
     const int n = rows(joint, side(joint.a.body), side(joint.b.body), turn_between(joint), out, off, at_);
     for (int i = 0; i < n; ++i) {
       rhs_[factors_.first(k) + i] = -off[i];
-      worst = std::max(worst, std::fabs(off[i]) * (of_turning(out[i]) ? model_.scale : 1));
+      worst = std::max(worst, std::fabs(off[i]) * sim::in_metres(out[i], model_.scale));
     }
   }
   return worst;

@@ -484,7 +484,7 @@ bool JointSolver<D>::project_initial_velocities(State<D>& state) {
   compute_rows();
   double fastest = 0;
   for (const Row<D>& row : rows_)
-    fastest = std::max(fastest, std::fabs(speed(row, at_)) * (of_turning(row) ? model_.scale : 1));
+    fastest = std::max(fastest, std::fabs(speed(row, at_)) * sim::in_metres(row, model_.scale));
   if (fastest <= kApart * model_.scale) return false;
   for (int round = 0; round < 2; ++round) solve_positions();  // the second for the rounding of the first
   for (const int i : bodies_) {
