@@ -957,6 +957,40 @@ TEST(Impacts, PassThroughARowOfAnyLength) {
   }
 }
 
+// So it goes through boxes that have fallen asleep on a floor without friction, also where a step has more
+// blows than events: those that it has not yet reached are no walls, and all of clay go on as one. Iterations
+// in space end where they change speeds by less than a part of what gravity does.
+TEST(Impacts, PassThroughARowThatSleeps) {
+  for (const int dimension : {2, 3}) {
+    for (const Manner& manner : kManners) {
+      for (const int rate : {15, 30, 60}) {
+        SCOPED_TRACE(fmt::format("{}D by {} at {}", dimension, manner.name, rate));
+        const bool flat = dimension == 2, iterative = manner.name == std::string("iterative");
+        const char *z = flat ? "" : ", 0", *deep = flat ? "" : ", 0.2";
+        const int boxes = flat ? 18 : 14;
+        std::string text =
+            fmt::format("duration = 1\n[room]\nwalls = \"ground\"\nsize = [60, 20{}]\n{}\nrate = {}\n",
+                        flat ? "" : ", 20", manner.keys, rate);
+        for (int i = 0; i <= boxes; ++i)
+          text += fmt::format(
+              "[[box]]\nsize = [0.2, 0.2{}]\nmass = 1\nelasticity = 0\nfriction = 0\nposition = [{}, "
+              "0.1{}]\nvelocity = [{}, 0{}]\n",
+              deep, i == 0 ? 9 : 9.8 + 0.2001 * i, z, i == 0 ? 2 : 0, z);
+        const TextRun run(text);
+        const sim::Snapshot end = run.at(0.95);
+        double momentum = 0;
+        for (std::size_t i = 0; i < end.bodies.size(); ++i) {
+          const double v = end.bodies[i].velocity.x();
+          momentum += v;
+          if (!iterative && rate < 60) continue;
+          EXPECT_NEAR(v, 2.0 / (boxes + 1), !iterative ? 1e-9 : flat ? 1e-4 : 0.3 * 9.81 / 240) << i;
+        }
+        EXPECT_NEAR(momentum, 2, 2e-6);
+      }
+    }
+  }
+}
+
 // Balls of clay that meet a plank side by side go on with it as one: v = -3 n / (n + 5), and it does not
 // turn.
 TEST(Impacts, ClayThatMeetsAPlankAllAtOnceGoesOnAsOne) {

@@ -72,6 +72,11 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   // also what comes down within it, slowly: that is no impact
   const double reach = std::max(limits_.touching_gap, 2 * h * kComing * limits_.rest_speed);
   find_contacts(state, reach);
+  // asleep they would be walls, also to what is still and is struck in this piece
+  while (wake_reached(state, true)) {
+    collect_bodies(state);
+    find_contacts(state, reach);
+  }
   update_poses(state);
   collect_constraints(state, 1e300, reach);
   save(state, interval_.begun);
@@ -139,6 +144,10 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   // push apart bodies that overlap now and did not before
   pose_driven(t + h);
   find_contacts(state, limits_.touching_gap);
+  while (wake_reached(state, true)) {
+    collect_bodies(state);
+    find_contacts(state, limits_.touching_gap);
+  }
   collect_constraints(state);
   build_blocks(true);
   find_islands();

@@ -353,7 +353,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void record_impulse(const ContactKey& key, const Constraint& constraint, const Vec<D>& impulse);
 
   // exact_sleep.cpp
-  bool wake_reached(State<D>& state);
+  bool wake_reached(State<D>& state, bool all = false);
   bool wake_struck(State<D>& state);
   void wake_near_driven(State<D>& state, double t, double h);
   void put_to_sleep(State<D>& state, double t, double h);

@@ -19,9 +19,10 @@ constexpr double kStill = 0.1;  // s: what has not moved for so long is still
 
 }  // namespace
 
-// wakes what something awake touches or holds. True where it did
+// wakes what something awake touches or holds, `all` of it or not what is still beside what is. True where it
+// did
 template <int D>
-bool ExactSolver<D>::wake_reached(State<D>& state) {
+bool ExactSolver<D>::wake_reached(State<D>& state, bool all) {
   const auto& bodies = active_.subset.bodies;
   if (std::none_of(bodies.begin(), bodies.end(), [&](int body) { return state.frozen[body] != 0; }))
     return false;
@@ -35,7 +36,7 @@ bool ExactSolver<D>::wake_reached(State<D>& state) {
     return known && known->touching != ContactMode::open;
   };
   for (const ContactCandidate<D>& gap : candidates_) {
-    if ((still(gap.key.a) || still(gap.key.b)) && !bears(gap.key)) continue;
+    if (!all && (still(gap.key.a) || still(gap.key.b)) && !bears(gap.key)) continue;
     // all of them touch
     scratch_.near.emplace_back();
     scratch_.near.back().key = gap.key, scratch_.near.back().gap = -limits_.touching_gap;
@@ -155,10 +156,10 @@ void ExactSolver<D>::find_accelerations(State<D>& state, double t) {
 
 template void ExactSolver<2>::wake_near_driven(State<2>&, double, double);
 template void ExactSolver<3>::wake_near_driven(State<3>&, double, double);
-template bool ExactSolver<2>::wake_reached(State<2>&);
+template bool ExactSolver<2>::wake_reached(State<2>&, bool);
 template bool ExactSolver<2>::wake_struck(State<2>&);
 template void ExactSolver<2>::put_to_sleep(State<2>&, double, double);
-template bool ExactSolver<3>::wake_reached(State<3>&);
+template bool ExactSolver<3>::wake_reached(State<3>&, bool);
 template bool ExactSolver<3>::wake_struck(State<3>&);
 template void ExactSolver<3>::put_to_sleep(State<3>&, double, double);
 

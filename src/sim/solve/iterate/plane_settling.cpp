@@ -33,7 +33,7 @@ void PlaneIterative::settle_contacts(double) {
 void PlaneIterative::settle_all() {
   const int count = int(batches_.size());
   const bool quiet = closing_rates_.quiet, follows = awake_pairs_ <= kFewPairs || quiet;
-  active_bodies_.settled = settled_rate(closing_rates_.most), active_bodies_.groups.clear();
+  active_bodies_.settled = settled_rate(closing_rates_.most, awake_pairs_), active_bodies_.groups.clear();
   const auto activate = [&] {
     active_bodies_.bodies.assign(turns_.size() + 1, plane::ActiveBodies::kNow);
     active_bodies_.bodies.back() = 0, active_bodies_.next.assign(turns_.size() + 1, 0);
