@@ -326,6 +326,46 @@ TEST(Pulley, ARopeThatIsWoundUpToItsEndEndsTheRun) {
   }
 }
 
+// Atwood's machine over points, until the lighter end comes to its point: after sqrt(2 l / a), a = g / 3.
+// There it would have to turn back at once; the run ends in the step before. A rope that is slack says
+// nothing of it, and one that swings by at an arm's length goes on.
+TEST(Pulley, AnEndThatComesToItsPointEndsTheRun) {
+  const auto ends = [](int dimension, const Manner& manner, int rate, double beside, double slack,
+                       const char* pushed) {
+    const char* z = dimension == 2 ? "" : ", 0";
+    const std::string keys = fmt::format("\nrate = {}", rate);
+    return TextRun(
+        (dimension == 2 ? plane_without_walls({manner.name, manner.keys + keys})
+                        : space_without_walls({manner.name, manner.keys + keys})) +
+        fmt::format(
+            "[[particle]]\nname = 'a'\nmass = 1\nposition = [{0}, -1{1}]\n{2}[[particle]]\nname = 'b'\n"
+            "mass = 2\nposition = [2, -1{1}]\n[[joint]]\nname = 'rope'\ntype = 'pulley'\n"
+            "between = ['a', 'b']\nover = [[0, 0{1}], [2, 0{1}]]\n{3}",
+            beside, z, pushed, slack > 0 ? fmt::format("length = {}\n", 4 + slack) : ""));
+  };
+  const double when = std::sqrt(2 * 3 / kEarth);
+  for (const int dimension : {2, 3}) {
+    for (const Manner& manner : kManners) {
+      for (const int rate : {30, 60, 600}) {
+        SCOPED_TRACE(fmt::format("{}D by {} at {}", dimension, manner.name, rate));
+        const TextRun taut = ends(dimension, manner, rate, 0, 0, "");
+        const auto outcome = taut.run->at(*sim::parse_rational("2"));
+        const auto* trouble = std::get_if<sim::Trouble>(&outcome);
+        ASSERT_TRUE(trouble);
+        EXPECT_EQ(trouble->body, "rope");
+        EXPECT_NE(trouble->what.find("no length left"), std::string::npos) << trouble->what;
+        EXPECT_NEAR(trouble->time, when - 0.5 / rate, 0.6 / rate);
+
+        const char* up = dimension == 2 ? "velocity = [0, 8]\n" : "velocity = [0, 8, 0]\n";
+        const TextRun loose = ends(dimension, manner, rate, 0, 40, up);
+        EXPECT_NEAR(loose.at(0.5).bodies[number_of(loose, "a")].position.y(), -1 + 4 - kEarth / 8, 1e-6);
+        const TextRun beside = ends(dimension, manner, rate, 0.7, 0, "");
+        EXPECT_GT(beside.at(2).bodies[number_of(beside, "b")].position.y(), -4);
+      }
+    }
+  }
+}
+
 // All pieces of a rope break together, and each side falls.
 TEST(Pulley, BreaksWhereItIsLoadedTooMuch) {
   for (const Manner& manner : kManners) {

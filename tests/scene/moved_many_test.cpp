@@ -387,5 +387,42 @@ TEST(MovedMany, GoesOnToTheSameBitsFromACheckpoint) {
   EXPECT_EQ(words_at(*filmed, "2.5"), words);
 }
 
+// A press that comes down on a box on the floor, where nothing gives way: the run ends with what there is no
+// room between, once a tenth of the box has gone into them, and not where it is merely held.
+TEST(MovedMany, APressThatLeavesNoRoomEndsTheRun) {
+  for (const int dimension : {2, 3}) {
+    const char* z = dimension == 2 ? "" : ", 0";
+    for (const Manner& manner : kManners) {
+      for (const int rate : {60, 240}) {
+        for (const double e : {0.0, 0.8}) {
+          // by events, and what bounces, it takes its time
+          if (rate > 60 && (manner.name == "event" || e > 0)) continue;
+          SCOPED_TRACE(fmt::format("{}D by {} at {}, e = {}", dimension, manner.name, rate, e));
+          const auto press = [&](const char* height) {
+            return TextRun(fmt::format(
+                "duration = 2\n[room]\nwalls = 'ground'\nsize = [8, 4{0}]\n{1}\nrate = {2}\n[[box]]\nname = "
+                "'b'\n"
+                "size = [0.4, 0.4{3}]\nmass = 1\nelasticity = {4}\nposition = [1, 0.2{5}]\n[[box]]\nname = "
+                "'p'\n"
+                "size = [1, 0.2{6}]\nelasticity = {4}\nposition = [1, 0.8{5}]\nmotion = {{ y = '{7}' }}\n",
+                dimension == 2 ? "" : ", 8", manner.keys, rate, dimension == 2 ? "" : ", 0.4", e, z,
+                dimension == 2 ? "" : ", 1", height));
+          };
+          const TextRun crushed = press("-0.5 * t");
+          const auto outcome = crushed.run->at(*sim::parse_rational("1.5"));
+          const auto* trouble = std::get_if<sim::Trouble>(&outcome);
+          ASSERT_TRUE(trouble);
+          EXPECT_EQ(trouble->body, "b");
+          // room for it until 0.6 s; what bounces between them without end is told at once
+          EXPECT_NEAR(trouble->time, 0.65, 0.06);
+          EXPECT_NE((trouble->what + trouble->likely).find("nothing stops"), std::string::npos);
+          const TextRun held = press("-0.145 * (1 - cos(2 * t))");
+          EXPECT_NEAR(held.at(1.5).bodies[number_of(held, "b")].position.y(), 0.2, 1e-6);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace obscura::scene

@@ -27,6 +27,8 @@ namespace {
 constexpr double kProof = 100, kSuspect = 4;
 constexpr double kOpen = 0.01;       // of a joint's size, or rad
 constexpr double kLong = 0.1;        // the same of a rope, which joints beside it may hardly let be put back
+constexpr double kSqueezed = 0.1;    // of a body's width
+constexpr double kOpposite = -0.5;   // of two normals: they press against each other
 constexpr double kOpenPoint = 1e-3;  // of the scene's size, for joints of points without a length
 
 template <int D>
@@ -52,6 +54,8 @@ DivergenceMonitor<D>::DivergenceMonitor(const Model<D>& model, const std::vector
     : model_(model), paths_(paths), too_long_(stability_warnings(model)) {
   for (std::size_t i = 0; D == 3 && i < model.joints.size(); ++i)
     if (model.joints[i].coil && model.joints[i].kind == JointKind::hinge) coils_.push_back(int(i));
+  drives_ =
+      std::any_of(model.bodies.begin(), model.bodies.end(), [](const Body<D>& body) { return body.driven; });
 }
 
 template <int D>
@@ -168,6 +172,40 @@ std::optional<Trouble> DivergenceMonitor<D>::check_joints(const State<D>& state,
           "its bodies move too far in a step, or its loop cannot close: raise physics.rate, or write "
           "physics.solver = \"direct\" where it is not"};
     }
+  }
+  return {};
+}
+
+template <int D>
+std::optional<Trouble> DivergenceMonitor<D>::check_squeezed(const State<D>& state, double t) const {
+  if (!drives_) return {};
+  struct Side {
+    int body, by;  // by: below zero what does not move
+    Vec<D> normal;
+    double depth;
+  };
+  std::vector<Side> sides;
+  const auto stays = [&](int body) { return body < 0 || model_.bodies[std::size_t(body)].fixed; };
+  const auto moved = [&](const Side& side) {
+    return side.by >= 0 && model_.bodies[std::size_t(side.by)].driven;
+  };
+  for (const Contact<D>& contact : state.contacts) {
+    const auto [a, b, feature] = contact.key;
+    if (!(contact.gap < 0) || stays(a) == stays(b)) continue;
+    const bool first = stays(b);
+    const Side side{first ? a : b, first ? b : a, first ? contact.normal : Vec<D>(-contact.normal),
+                    -contact.gap};
+    for (const Side& other : sides) {
+      if (other.body != side.body || other.by == side.by || !(moved(side) || moved(other))) continue;
+      if (!(other.normal.dot(side.normal) < kOpposite)) continue;
+      const double width = 2 * half_thickness(model_.bodies[std::size_t(side.body)].shape);
+      if (!(side.depth + other.depth > kSqueezed * width) || !(width > 0)) continue;
+      const auto name = [&](int body) { return body < 0 ? std::string("the walls") : named(model_, body); };
+      return Trouble{t, named(model_, side.body), "place",
+                     "has no room left between " + name(other.by) + " and " + name(side.by),
+                     "nothing stops either of them: let what is moved end before"};
+    }
+    sides.push_back(side);
   }
   return {};
 }

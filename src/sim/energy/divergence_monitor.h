@@ -38,12 +38,16 @@ class DivergenceMonitor {
                                      double t) const;
   /// The first unbroken joint whose equations are off by more than a hundredth of its size, or of a radian.
   std::optional<Trouble> check_joints(const State<D>& state, double t) const;
+  /// The first body that is pressed by a tenth of its width into what does not give way on two sides, of
+  /// which one is moved. By the contacts of the state.
+  std::optional<Trouble> check_squeezed(const State<D>& state, double t) const;
 
  private:
   std::string likely(const State<D>& state, int body) const;
 
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
+  bool drives_ = false;                    // bodies are moved
   std::vector<int> coils_;                 // joints: hinges with springs in space
   std::vector<Trouble> too_long_;          // what the step is too long for, from the start
   mutable std::vector<BodyMotion<D>> at_;  // of check_joints()

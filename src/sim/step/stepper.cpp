@@ -57,7 +57,7 @@ Stepper<D>::Stepper(const Model<D>& model)
       forces_(model),
       forced_flight_(model, forces_.flying()),
       springs_(!model.springs.empty() || !model.mice.empty() || !stability_warnings(model).empty()) {
-  wound_ropes_ = has_wound_ropes(model);
+  wound_ropes_ = has_wound_ropes(model), pulleys_ = has_pulleys(model);
   for (const Joint<D>& joint : model.joints) springs_ = springs_ || joint.coil.has_value();
   // so do bodies that are moved, and a potential that changes with the time
   for (const Body<D>& body : model.bodies) springs_ = springs_ && !body.carries();
@@ -256,7 +256,7 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
       suspects_.clear();
       for (const int body : by_handout_) handout_.look(state, body, 1, suspects_);
       handout_.collide(state, suspects_, ended);
-      if (auto trouble = follow_wound_ropes(state, ended)) return trouble;
+      if (auto trouble = follow_pulleys(state, ended)) return trouble;
     } else {
       suspects_.clear();
       const bool sound = integrate(state, begun, (to - from) * h);
@@ -276,20 +276,23 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
   }
   ++state.step;
   touch_script(state, {state.step, 0});
-  if (contact_ && state.step % watch_every_ == 0)
-    return divergence_.check_joints(state, time({state.step, 0}, model_.rate));
+  if (contact_ && state.step % watch_every_ == 0) {
+    const double t = time({state.step, 0}, model_.rate);
+    if (auto trouble = divergence_.check_squeezed(state, t)) return trouble;
+    return divergence_.check_joints(state, t);
+  }
   return {};
 }
 
-// ropes on wheels, to where they are now
+// ropes to where they are now
 template <int D>
-std::optional<Trouble> Stepper<D>::follow_wound_ropes(State<D>& state, double t) const {
-  if (!wound_ropes_) return {};
+std::optional<Trouble> Stepper<D>::follow_pulleys(State<D>& state, double t) const {
+  if (!pulleys_) return {};
   const std::optional<int> ended = follow_ropes(model_, state);
   if (!ended) return {};
   return Trouble{t, model_.joints[std::size_t(*ended)].name, "straight piece",
-                 "has no length left: its end comes to the rim of the wheel",
-                 "the rope is wound up: end the run before, or release it by a condition"};
+                 "has no length left: its end comes to what the rope runs over",
+                 "end the run before, or release the rope by a condition"};
 }
 
 template <int D>

@@ -81,7 +81,7 @@ class Stepper {
   std::optional<Trouble> advance(State<D>& state, double from, double fraction);
   std::optional<Trouble> advance_pieces(State<D>& state, double from, double fraction);
   std::optional<Trouble> check_energy(const State<D>& state);
-  std::optional<Trouble> follow_wound_ropes(State<D>& state, double t) const;
+  std::optional<Trouble> follow_pulleys(State<D>& state, double t) const;
   bool may_gain(const State<D>& state) const;
   void touch_script(State<D>& state, TimeStamp at);
   void plan(const State<D>& state);
@@ -127,6 +127,7 @@ class Stepper {
   std::int64_t watch_every_ = 1;  // steps
   bool springs_ = false;          // something may ever feed it
   bool wound_ropes_ = false;      // ropes run on wheels
+  bool pulleys_ = false;          // ropes run over anything
 };
 
 }  // namespace obscura::sim

@@ -92,28 +92,30 @@ Wrench<D> coil_load(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMot
 
 template <int D>
 std::optional<int> follow_ropes(const Model<D>& model, State<D>& state) {
+  static const BodyMotion<D> room;
+  const double h = step_length(model.rate);
   std::optional<int> ended;
-  if constexpr (D == 2) {
-    static const BodyMotion<D> room;
-    std::vector<BodyMotion<D>> all(model.bodies.size());
-    state.wound.resize(model.joints.size());
-    for (std::size_t i = 0; i < model.joints.size(); ++i) {
-      const Joint<D>& joint = model.joints[i];
-      if (joint.kind != JointKind::pulley || (i < state.broken.size() && state.broken[i])) continue;
-      if (joint.on_a.offset == 0 && joint.on_b.offset == 0 && joint.around.empty()) continue;
-      joint.each_body([&](int body) {
-        if (body >= 0) all[std::size_t(body)] = body_motion(state, body);
-      });
-      const AngularVec<D> turn = AngularVec<D>::Zero();
-      Wound& wound = state.wound[i];
-      const auto side = [&](int body) { return body < 0 ? room : all[std::size_t(body)]; };
-      const BodyMotion<D> a = side(joint.a.body), b = side(joint.b.body);
-      const auto now = on_wheels({joint, a, b, turn, all, wound}, step_length(model.rate));
-      if (now)
-        wound = *now;
-      else if (!ended)
-        ended = int(i);
+  std::vector<BodyMotion<D>> all(model.bodies.size());
+  if (has_wound_ropes(model)) state.wound.resize(model.joints.size());
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const Joint<D>& joint = model.joints[i];
+    if (joint.kind != JointKind::pulley || (i < state.broken.size() && state.broken[i])) continue;
+    joint.each_body([&](int body) {
+      if (body >= 0) all[std::size_t(body)] = body_motion(state, body);
+    });
+    const auto side = [&](int body) { return body < 0 ? room : all[std::size_t(body)]; };
+    const BodyMotion<D> a = side(joint.a.body), b = side(joint.b.body);
+    const AngularVec<D> turn = AngularVec<D>::Zero();
+    const JointPose<D> at{joint, a, b, turn, all, wound(state, i)};
+    bool ends = comes_to_its_end(at, h);
+    if constexpr (D == 2) {
+      if (joint.on_a.offset != 0 || joint.on_b.offset != 0 || !joint.around.empty()) {
+        const auto now = on_wheels(at, h);
+        ends = ends || !now;
+        if (now) state.wound[i] = *now;
+      }
     }
+    if (ends && !ended) ended = int(i);
   }
   return ended;
 }

@@ -109,6 +109,13 @@ bool has_wound_ropes(const Model<D>& model) {
   });
 }
 
+/// Whether it has ropes that run over something.
+template <int D>
+bool has_pulleys(const Model<D>& model) {
+  return std::any_of(model.joints.begin(), model.joints.end(),
+                     [](const Joint<D>& joint) { return joint.kind == JointKind::pulley; });
+}
+
 /// Whether it has ropes with friction.
 template <int D>
 bool has_rubbing_ropes(const Model<D>& model) {
@@ -123,8 +130,8 @@ Wound wound(const State<D>& state, std::size_t joint) {
 }
 
 /// Follows State::wound to where ropes are now, at the end of a step: from where they were by less than half
-/// a round. Returns the first joint whose rope has no straight piece left, as its end is on the rim of a
-/// wheel.
+/// a round. Returns the first joint whose rope will have no straight piece left within the next step, as its
+/// end comes to the rim of a wheel, or is tight and comes to a point that it runs over.
 template <int D>
 std::optional<int> follow_ropes(const Model<D>& model, State<D>& state);
 

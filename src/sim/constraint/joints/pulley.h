@@ -82,17 +82,23 @@ inline RopeEnd rope_end(const JointPose<2>& at, bool first) {
   return {p.x + arm_p, q.x + arm_q, on_a - on_b, q.velocity(arm_q) - p.velocity(arm_p)};
 }
 
-inline constexpr double kAlong = 1e-6;  // of a speed's square: across the piece
+/// Whether a piece between two places, `u` apart and offset by q, will have next to no length left within a
+/// time h: on the straight way from here, least of
+///   l^2 = (u + u' s)^2 - q^2        0 <= s <= h
+/// is below the square of a part of that way. Its end turns it about then, faster than a step follows.
+template <int D>
+bool runs_out(const Vec<D>& u, const Vec<D>& rate, double q, double h) {
+  constexpr double kPart = 0.1;
+  const double along = u.dot(rate), speed2 = rate.squaredNorm();
+  if (!(along < 0)) return false;
+  const double s = std::min(h, -along / speed2),
+               least2 = u.squaredNorm() - q * q + s * (2 * along + s * speed2);
+  return least2 <= kPart * kPart * h * h * speed2;
+}
 
-/// Whether the piece will have no length left within a time h, as the end is then on the rim of the wheel: on
-/// the straight way from here, (u + u' s)^2 = q^2. Or turns by more than a radian in it, as it is so short.
+/// The same of an end on a wheel: or it turns by more than a radian in that time, as it is so short.
 inline bool runs_out(const RopeEnd& end, const RopePiece<2>& piece, double h) {
-  if (!(piece.length > 0)) return true;
-  const double l2 = piece.length * piece.length, along = (end.to - end.from).dot(end.rate);
-  // straight along the piece it comes to the rim where both times are one, but for rounding
-  const double reach = along * along - l2 * end.rate.squaredNorm();
-  if (along < 0 && reach > -kAlong * along * along && l2 <= h * (std::sqrt(std::max(0.0, reach)) - along))
-    return true;
+  if (!(piece.length > 0) || runs_out<2>(end.to - end.from, end.rate, end.offset, h)) return true;
   const double across = piece.direction[0] * end.rate[1] - piece.direction[1] * end.rate[0];
   return h * std::fabs(across) > piece.length;
 }
@@ -135,6 +141,13 @@ class RopePlaces {
     const BodyMotion<D>&p = at_.side(end(i).body), &q = at_.side(end(i + 1).body);
     return rope_piece<D>(Vec<D>(p.x + p.arm(end(i).local)), Vec<D>(q.x + q.arm(end(i + 1).local)),
                          offset(i) - offset(i + 1));
+  }
+  /// Whether place i and the next are points, and no rope will be left between them within a time h, s.
+  bool meet(int i, double h) const {
+    if (offset(i) != 0 || offset(i + 1) != 0) return false;
+    const BodyMotion<D>&p = at_.side(end(i).body), &q = at_.side(end(i + 1).body);
+    const Vec<D> arm_p = p.arm(end(i).local), arm_q = q.arm(end(i + 1).local);
+    return runs_out<D>(q.x + arm_q - p.x - arm_p, q.velocity(arm_q) - p.velocity(arm_p), 0, h);
   }
   /// Adds a piece to a row of the rope, `share` times: its ends, less the turn of wheels there, and J' v.
   void add(int i, const RopePiece<D>& piece, double share, Row<D>& row) const {
@@ -185,6 +198,20 @@ void hold_rope(const JointPose<D>& at, Row<D>* J, double* C) {
     if (!joint.turns.empty()) C[0] += (at.turn - joint.turn)[0];
   }
   J[0] = std::move(row);
+}
+
+/// Whether a rope that is tight comes to an end within a time h, s: a place of it to the next.
+template <int D>
+bool comes_to_its_end(const JointPose<D>& at, double h) {
+  constexpr double kTight = 1e-6;  // of its length
+  const RopePlaces<D> places(at);
+  bool any = false;
+  for (int i = 0; i + 1 < places.size(); ++i) any = any || places.meet(i, h);
+  if (!any) return false;
+  Row<D> row;
+  double slack = 0;
+  hold_rope(at, &row, &slack);
+  return slack <= kTight * at.joint.length;
 }
 
 /// Whether the rope of a joint slides over things with friction.

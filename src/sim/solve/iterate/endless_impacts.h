@@ -19,7 +19,8 @@ inline constexpr std::size_t kMostImpacts = 200000;
   trouble.time = t, trouble.body = std::move(name), trouble.quantity = "number of impacts";
   trouble.what = "grew past " + std::to_string(kMostImpacts) + " within a step";
   trouble.likely =
-      "too many impacts in " + std::to_string(h) + " s: raise physics.rate, or lower the elasticity";
+      "too many impacts in " + std::to_string(h) +
+      " s: raise physics.rate, or lower the elasticity, or leave it room between what nothing stops";
   throw NotFinite(std::move(trouble));
 }
 
