@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include <string>
+#include <type_traits>
 
 #include "obscura/obscura.h"
 
@@ -20,6 +21,39 @@ pybind11::dict dict(const Table& from);
 
 /// "2 x 5": an array's shape in messages.
 std::string shape(const pybind11::array& of);
+
+/// A member as Python keeps it in a pickle, and back.
+template <class Member>
+pybind11::object kept(const Member& member) {
+  if constexpr (std::is_enum_v<Member>)
+    return pybind11::int_(int(member));
+  else if constexpr (std::is_base_of_v<pybind11::object, Member>)
+    return member;
+  else
+    return pybind11::cast(member);
+}
+inline pybind11::object kept(const double (&x)[3]) { return pybind11::make_tuple(x[0], x[1], x[2]); }
+template <class Member>
+void take_back(pybind11::handle from, Member& member) {
+  if constexpr (std::is_enum_v<Member>)
+    member = Member(from.cast<int>());
+  else
+    member = from.cast<Member>();
+}
+inline void take_back(pybind11::handle from, double (&x)[3]) {
+  for (std::size_t i = 0; i < 3; ++i) x[i] = from[pybind11::int_(i)].cast<double>();
+}
+/// Pickling of a value by its members.
+template <class T, auto... members>
+auto pickled() {
+  return pybind11::pickle([](const T& it) { return pybind11::make_tuple(kept(it.*members)...); },
+                          [](const pybind11::tuple& saved) {
+                            T it;
+                            std::size_t i = 0;
+                            (take_back(saved[i++], it.*members), ...);
+                            return it;
+                          });
+}
 
 /// Makes the module's exceptions, and translates the library's errors to them.
 void add_errors();

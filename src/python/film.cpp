@@ -211,6 +211,8 @@ void add_film(py::module_& module) {
             write_png(name, frame_of(it.pixels), it.transparent);
           },
           py::arg("path"), "As a PNG.")
+      .def(pickled<Picture, &Picture::pixels, &Picture::number, &Picture::time, &Picture::state,
+                   &Picture::transparent>())
       .def("_repr_png_", [](const Picture& it) {
         const auto bytes = png(frame_of(it.pixels), it.transparent);
         return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());

@@ -60,16 +60,20 @@ void add_world(py::module_& module) {
       .def_property_readonly(
           "impulse", [](const Contact& it) { return vector(it.impulse); },
           "On the body in the last step, N s.")
-      .def_property_readonly("mode", [](const Contact& it) {
-        constexpr const char* kModes[] = {"bouncing", "sliding", "sticking"};
-        return kModes[int(it.mode)];
-      });
+      .def_property_readonly("mode",
+                             [](const Contact& it) {
+                               constexpr const char* kModes[] = {"bouncing", "sliding", "sticking"};
+                               return kModes[int(it.mode)];
+                             })
+      .def(pickled<Contact, &Contact::body, &Contact::other, &Contact::wall, &Contact::point,
+                   &Contact::normal, &Contact::gap, &Contact::force, &Contact::impulse, &Contact::mode>());
 
   py::class_<Pair>(module, "Pair", "Two that touch, whichever of their features do.")
       .def_readonly("body", &Pair::body)
       .def_readonly("other", &Pair::other)
       .def_readonly("wall", &Pair::wall)
       .def(py::self == py::self)
+      .def(pickled<Pair, &Pair::body, &Pair::other, &Pair::wall>())
       .def("__repr__", [](const Pair& it) {
         return "<Pair of body " + std::to_string(it.body) +
                (it.other >= 0 ? " and body " + std::to_string(it.other)
@@ -84,6 +88,8 @@ void add_world(py::module_& module) {
       .def_readonly("of", &Event::of)
       .def_readonly("marks", &Event::marks)
       .def_readonly("stop", &Event::stop)
+      .def(
+          pickled<Event, &Event::time, &Event::name, &Event::what, &Event::of, &Event::marks, &Event::stop>())
       .def("__repr__",
            [](const Event& it) { return "<Event " + it.name + " at " + std::to_string(it.time) + " s>"; });
 
@@ -94,6 +100,8 @@ void add_world(py::module_& module) {
       .def_readonly("fields", &Energies::fields)
       .def_readonly("work", &Energies::work)
       .def_readonly("total", &Energies::total)
+      .def(pickled<Energies, &Energies::kinetic, &Energies::gravity, &Energies::springs, &Energies::fields,
+                   &Energies::work, &Energies::total>())
       .def("__repr__",
            [](const Energies& it) { return "<Energies, " + std::to_string(it.total) + " J in all>"; });
 

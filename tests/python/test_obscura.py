@@ -254,6 +254,40 @@ def test_scenes_worlds_and_states_pickle():
     assert other.hash == world.hash
 
 
+def test_what_worlds_and_renderers_give_pickles():
+    scene = obscura.Scene.parse("""
+        [room]
+        size = [4, 4]
+        [[ball]]
+        name = "ball"
+        radius = 0.2
+        elasticity = 0
+        position = [2, 1]
+        [[when]]
+        touches = ["ball", "floor"]
+        name = "down"
+        do = [{ mark = "down" }]
+    """)
+    world = scene.world()
+    world.contact_changes()
+    world.step_to(2)
+    began, _ = world.contact_changes()
+    frame = next(iter(obscura.Renderer(scene, size=(160, 90))))
+    for value in (*world.contacts, *began, *world.events, world.energies, frame):
+        other = pickle.loads(pickle.dumps(value))
+        for name in dir(type(value)):
+            if name.startswith("_") or callable(getattr(value, name)):
+                continue
+            assert np.array_equal(getattr(other, name), getattr(value, name)), name
+    assert world.contacts and began and world.events
+
+
+def test_things_are_looked_for_by_name():
+    scene = room()
+    names = [ball.name for ball in scene.ball]
+    assert names and all(name in scene.ball for name in names) and "nobody" not in scene.ball
+
+
 # --- worlds
 
 

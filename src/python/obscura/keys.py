@@ -205,6 +205,9 @@ class Kind:
     def __len__(self) -> int:
         return len(self._list())
 
+    def __contains__(self, which: Any) -> bool:
+        return isinstance(which, str) and any(each.get("name") == which for each in self._list())
+
     def __getitem__(self, which: int | str) -> Section:
         i = self._number(which)
         return Section(f"{self._path}[{i}]", self._list()[i], self._keys, self._touch)
