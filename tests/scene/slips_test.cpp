@@ -230,6 +230,25 @@ TEST(Slips, OnAPlateThatTurnsFrictionTurnsWithTheSlip) {
   }
 }
 
+// A crate that does not turn, on a table that turns ever faster beneath it: its corners share the load, and
+// each rubs against where the table goes there. Place after 1.769468 s by a quarter of the weight on each
+// corner and Coulomb's law at each, integrated by Runge and Kutta.
+TEST(Slips, OnATableThatTurnsCornersOfWhatDoesNotShareTheLoad) {
+  for (const char* solver : {"direct", "iterative"}) {
+    for (const int rate : {60, 240}) {
+      const TextRun scene(fmt::format(
+          "duration = 2\n[room]\nsize = [40, 20, 40]\nwalls = 'none'\n[physics]\nsolver = '{}'\nrate = {}\n"
+          "[[box]]\nsize = [10, 0.2, 10]\nposition = [0, 4.9, 0]\nmotion = {{ angle = "
+          "'42.97183463481174 * t^2' }}\nfriction = 0.4\n[[box]]\nname = 'crate'\nsize = [0.02, 0.02, "
+          "0.02]\nmass = 1\nposition = [1, 5.01, 0]\nfriction = 0.4\nelasticity = 0\nrotation = false\n",
+          solver, rate));
+      const sim::Vec3 there = scene.at(1.769468).bodies[number_of(scene, "crate")].position;
+      EXPECT_NEAR(there.x(), -0.73189, 2e-3 * 60 / rate) << solver << rate;
+      EXPECT_NEAR(there.z(), -0.89586, 2e-3 * 60 / rate) << solver << rate;
+    }
+  }
+}
+
 // A box on a free box under a push that grows: it begins to slide where the push is mu m g, and goes faster
 // by what is more. While it is slow, its friction as a whole brings it to rest within a substep, though that
 // of each of its corners does not, and no guess says which way it goes.

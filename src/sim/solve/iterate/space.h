@@ -233,6 +233,7 @@ class SpaceIterative final : public Iterative<3> {
   void place(State<D>& state, double h);
   void warm_start_contacts(const State<D>& state, double h);
   void set_aims(int begin, int end, const State<D>& state, double h);
+  void share_loads();
   void order_blows(double h);
   bool strike_later(double h);
   void moderate_warm_start();
