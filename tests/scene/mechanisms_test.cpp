@@ -326,6 +326,26 @@ TEST(Pulley, ARopeThatIsWoundUpToItsEndEndsTheRun) {
   }
 }
 
+// The bob of a swinging Atwood machine comes to the rim of its wheel at 0.545 s, on a way that bends: the run
+// ends there at every rate, and does not go on through the rim.
+TEST(Pulley, ABobThatSwingsOntoTheRimEndsTheRun) {
+  for (const Manner& manner : kManners) {
+    for (const int rate : {25, 40, 60, 80, 120, 600}) {
+      if (manner.name == "event" && rate < 120) continue;  // its steps bend more
+      const TextRun scene(plane_without_walls({"", manner.keys + fmt::format("\nrate = {}", rate)}) +
+                          "[[ball]]\nname = 'w'\nradius = 0.3\nmass = 1\nposition = [0.3, 0]\n[[joint]]\n"
+                          "type = 'pin'\nbetween = ['w', 'room']\n[[particle]]\nname = 'a'\nmass = 1\n"
+                          "position = [1.6, 0]\n[[particle]]\nname = 'b'\nmass = 2\nposition = [0, -4]\n"
+                          "[[joint]]\ntype = 'pulley'\nbetween = ['b', 'a']\nover = ['w']\n");
+      const auto outcome = scene.run->at({2, 1});
+      const auto* trouble = std::get_if<sim::Trouble>(&outcome);
+      ASSERT_TRUE(trouble) << manner.name << rate;
+      EXPECT_NE(trouble->what.find("no length left"), std::string::npos) << trouble->what;
+      EXPECT_NEAR(trouble->time, 0.545, 1.0 / rate + 0.004) << manner.name << rate;
+    }
+  }
+}
+
 // Atwood's machine over points, until the lighter end comes to its point: after sqrt(2 l / a), a = g / 3.
 // There it would have to turn back at once; the run ends in the step before. A rope that is slack says
 // nothing of it, and one that swings by at an arm's length goes on.

@@ -249,6 +249,7 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
     books_by_stage_ = !contact_ && dynamics_.size() == 0 && forces_.any();
     if (!books_by_stage_) work_.open(state);
     if (contact_) {
+      note_ropes(state);
       contact_->step(state, begun, (to - from) * h);
       drives_.put(state, ended);
       if (!sound(state)) return divergence_.check_bounds(state, ended);
@@ -256,7 +257,7 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
       suspects_.clear();
       for (const int body : by_handout_) handout_.look(state, body, 1, suspects_);
       handout_.collide(state, suspects_, ended);
-      if (auto trouble = follow_pulleys(state, ended)) return trouble;
+      if (auto trouble = follow_pulleys(state, ended, (to - from) * h)) return trouble;
     } else {
       suspects_.clear();
       const bool sound = integrate(state, begun, (to - from) * h);
@@ -284,11 +285,19 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
   return {};
 }
 
-// ropes to where they are now
+// how bodies stand before ropes on wheels go on
 template <int D>
-std::optional<Trouble> Stepper<D>::follow_pulleys(State<D>& state, double t) const {
+void Stepper<D>::note_ropes(const State<D>& state) {
+  rope_ends_.resize(wound_ropes_ ? model_.bodies.size() : 0);
+  for (std::size_t body = 0; body < rope_ends_.size(); ++body)
+    rope_ends_[body] = body_motion(state, int(body));
+}
+
+// ropes to where they are now, after `done` s
+template <int D>
+std::optional<Trouble> Stepper<D>::follow_pulleys(State<D>& state, double t, double done) const {
   if (!pulleys_) return {};
-  const std::optional<int> ended = follow_ropes(model_, state);
+  const std::optional<int> ended = follow_ropes(model_, state, rope_ends_, done);
   if (!ended) return {};
   return Trouble{t, model_.joints[std::size_t(*ended)].name, "straight piece",
                  "has no length left: its end comes to what the rope runs over",

@@ -81,7 +81,8 @@ class Stepper {
   std::optional<Trouble> advance(State<D>& state, double from, double fraction);
   std::optional<Trouble> advance_pieces(State<D>& state, double from, double fraction);
   std::optional<Trouble> check_energy(const State<D>& state);
-  std::optional<Trouble> follow_pulleys(State<D>& state, double t) const;
+  void note_ropes(const State<D>& state);
+  std::optional<Trouble> follow_pulleys(State<D>& state, double t, double done) const;
   bool may_gain(const State<D>& state) const;
   void touch_script(State<D>& state, TimeStamp at);
   void plan(const State<D>& state);
@@ -124,10 +125,11 @@ class Stepper {
   std::vector<double> spring_angles_;
   std::vector<int> by_handout_;  // bodies with that law in `contact` and `event` too
   Stages stages_;
-  std::int64_t watch_every_ = 1;  // steps
-  bool springs_ = false;          // something may ever feed it
-  bool wound_ropes_ = false;      // ropes run on wheels
-  bool pulleys_ = false;          // ropes run over anything
+  std::int64_t watch_every_ = 1;          // steps
+  bool springs_ = false;                  // something may ever feed it
+  bool wound_ropes_ = false;              // ropes run on wheels
+  bool pulleys_ = false;                  // ropes run over anything
+  std::vector<BodyMotion<D>> rope_ends_;  // bodies, as a piece of a step begins; none without ropes on wheels
 };
 
 }  // namespace obscura::sim

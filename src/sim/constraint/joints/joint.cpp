@@ -91,8 +91,10 @@ Wrench<D> coil_load(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMot
 }
 
 template <int D>
-std::optional<int> follow_ropes(const Model<D>& model, State<D>& state) {
+std::optional<int> follow_ropes(const Model<D>& model, State<D>& state,
+                                std::type_identity_t<std::span<const BodyMotion<D>>> begun, double done) {
   static const BodyMotion<D> room;
+  static const AngularVec<D> turn = AngularVec<D>::Zero();
   const double h = step_length(model.rate);
   std::optional<int> ended;
   std::vector<BodyMotion<D>> all(model.bodies.size());
@@ -103,15 +105,18 @@ std::optional<int> follow_ropes(const Model<D>& model, State<D>& state) {
     joint.each_body([&](int body) {
       if (body >= 0) all[std::size_t(body)] = body_motion(state, body);
     });
-    const auto side = [&](int body) { return body < 0 ? room : all[std::size_t(body)]; };
-    const BodyMotion<D> a = side(joint.a.body), b = side(joint.b.body);
-    const AngularVec<D> turn = AngularVec<D>::Zero();
-    const JointPose<D> at{joint, a, b, turn, all, wound(state, i)};
+    const auto pose = [&](std::span<const BodyMotion<D>> of) {
+      const auto side = [&](int body) -> const BodyMotion<D>& {
+        return body < 0 ? room : of[std::size_t(body)];
+      };
+      return JointPose<D>{joint, side(joint.a.body), side(joint.b.body), turn, of, wound(state, i)};
+    };
+    const JointPose<D> at = pose(all);
     bool ends = comes_to_its_end(at, h);
     if constexpr (D == 2) {
       if (joint.on_a.offset != 0 || joint.on_b.offset != 0 || !joint.around.empty()) {
         const auto now = on_wheels(at, h);
-        ends = ends || !now;
+        ends = ends || !now || (!begun.empty() && met_rims(pose(begun), at, done));
         if (now) state.wound[i] = *now;
       }
     }
@@ -186,7 +191,8 @@ template bool free_row<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotio
 template Wrench<2> load_on_a<2>(const Joint<2>&, const Row<2>&, const BodyMotion<2>&, const BodyMotion<2>&);
 template Wrench<2> coil_load<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&,
                                 const JointTurn<2>&);
-template std::optional<int> follow_ropes<2>(const Model<2>&, State<2>&);
+template std::optional<int> follow_ropes<2>(const Model<2>&, State<2>&, std::span<const BodyMotion<2>>,
+                                            double);
 template const JointEquations<3>& equations<3>(JointKind);
 template int rows<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const JointTurn<3>&,
                      Row<3>*, double*, std::span<const BodyMotion<3>>);
@@ -197,7 +203,8 @@ template bool free_row<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotio
 template Wrench<3> load_on_a<3>(const Joint<3>&, const Row<3>&, const BodyMotion<3>&, const BodyMotion<3>&);
 template Wrench<3> coil_load<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&,
                                 const JointTurn<3>&);
-template std::optional<int> follow_ropes<3>(const Model<3>&, State<3>&);
+template std::optional<int> follow_ropes<3>(const Model<3>&, State<3>&, std::span<const BodyMotion<3>>,
+                                            double);
 
 template Made<2> as_it_stands<2>(const Joint<2>&, const State<2>&, std::size_t);
 template Made<3> as_it_stands<3>(const Joint<3>&, const State<3>&, std::size_t);

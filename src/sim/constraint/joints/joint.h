@@ -131,9 +131,12 @@ Wound wound(const State<D>& state, std::size_t joint) {
 
 /// Follows State::wound to where ropes are now, at the end of a step: from where they were by less than half
 /// a round. Returns the first joint whose rope will have no straight piece left within the next step, as its
-/// end comes to the rim of a wheel, or is tight and comes to a point that it runs over.
+/// end comes to the rim of a wheel, or is tight and comes to a point that it runs over; or was on a rim since
+/// its bodies stood as in `begun`, by number, `done` s ago.
 template <int D>
-std::optional<int> follow_ropes(const Model<D>& model, State<D>& state);
+std::optional<int> follow_ropes(const Model<D>& model, State<D>& state,
+                                std::type_identity_t<std::span<const BodyMotion<D>>> begun = {},
+                                double done = 0);
 
 /// What breaks with what is broken: all pulleys of one rope, and a gear with either of its joints.
 template <int D>

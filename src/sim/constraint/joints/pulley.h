@@ -103,14 +103,40 @@ inline bool runs_out(const RopeEnd& end, const RopePiece<2>& piece, double h) {
   return h * std::fabs(across) > piece.length;
 }
 
+/// Whether the rope has a wheel at that end.
+inline bool on_wheel(const Joint<2>& joint, bool first) {
+  const std::vector<double>& around = joint.around;
+  return (first ? joint.on_a : joint.on_b).offset != 0 ||
+         (!around.empty() && (first ? around.front() : around.back()) != 0);
+}
+
+/// Whether an end was on the rim of its wheel on its way, of h s, between how it began and how it ended:
+///   |u| < |q|    on the cubic that both places and speeds give
+inline bool met_rim(const RopeEnd& begun, const RopeEnd& ended, double h) {
+  constexpr int kLooks = 16;
+  const Vec<2> u = begun.to - begun.from, w = ended.to - ended.from;
+  for (int i = 1; i < kLooks; ++i) {
+    const double s = double(i) / kLooks, left = 1 - s;
+    const Vec<2> there = left * left * ((1 + 2 * s) * u + s * h * begun.rate) +
+                         s * s * ((3 - 2 * s) * w - left * h * ended.rate);
+    if (there.squaredNorm() < ended.offset * ended.offset) return true;
+  }
+  return false;
+}
+
+/// The same of either end of a rope.
+inline bool met_rims(const JointPose<2>& begun, const JointPose<2>& ended, double h) {
+  return (on_wheel(begun.joint, true) && met_rim(rope_end(begun, true), rope_end(ended, true), h)) ||
+         (on_wheel(begun.joint, false) && met_rim(rope_end(begun, false), rope_end(ended, false), h));
+}
+
 /// Where the rope is on its wheels, all rounds counted; none where a piece at them runs out within a time h,
 /// s.
 inline std::optional<Wound> on_wheels(const JointPose<2>& at, double h) {
   Wound now = at.wound;
   for (const bool first : {true, false}) {
     const Winding<2>& wheel = first ? at.joint.on_a : at.joint.on_b;
-    const std::vector<double>& around = at.joint.around;
-    if (wheel.offset == 0 && (around.empty() || (first ? around.front() : around.back()) == 0)) continue;
+    if (!on_wheel(at.joint, first)) continue;
     const RopeEnd end = rope_end(at, first);
     const RopePiece<2> piece = rope_piece<2>(end.from, end.to, end.offset);
     if (runs_out(end, piece, h)) return {};
