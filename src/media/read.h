@@ -18,7 +18,7 @@ struct MovieFacts {
 };
 
 /// Hands out the frames of a movie in order, as RGBA8 with values 0 to 255, converted by the matrix and range
-/// the file is tagged with (bt709, limited, where it is silent).
+/// the file is tagged with (bt709, limited, where it is silent), and with the alpha that it carries.
 class MovieReader {
  public:
   /// Throws media::Error naming the path where it is no movie.
