@@ -87,6 +87,7 @@ void MovieReader::Impl::open() {
   facts.fps_num = rate.num;
   facts.fps_den = rate.den > 0 ? rate.den : 1;
   facts.frames = stream->nb_frames;
+  facts.tick = av_q2d(stream->time_base);
   facts.codec = libav().avcodec_get_name(stream->codecpar->codec_id);
   facts.tags = tags_of_comment(text(format->metadata, "comment"));
   const std::string title = text(format->metadata, "title");

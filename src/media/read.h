@@ -13,6 +13,7 @@ struct MovieFacts {
   int width = 0, height = 0;
   std::int64_t fps_num = 0, fps_den = 1;
   std::int64_t frames = 0;  // 0: the file does not say
+  double tick = 0;          // s, to which times of frames are rounded
   std::string codec;        // "h264"
   Tags tags;                // those of the comment, and the title as "Title"
 };

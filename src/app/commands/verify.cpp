@@ -131,7 +131,9 @@ void judge_movie(const std::string& file, const std::string& again, Verdict& ver
   const Comparison found = compare(file, again);
   if (found.same_bytes) return verdict.lines.push_back("movie: the same, byte by byte");
   if (found.same()) return verdict.lines.push_back("movie: the same pixels in all frames");
-  verdict.no(fmt::format("movie: {} of {} frames differ", found.differing.size(), found.compared));
+  verdict.no(found.differing.empty()
+                 ? "movie: the same pixels, but not the same film"
+                 : fmt::format("movie: {} of {} frames differ", found.differing.size(), found.compared));
   for (const std::string& line : found.plain) verdict.lines.push_back("  " + line);
   if (found.worst >= 0) {
     const auto& worst = found.differing[std::size_t(found.worst)];

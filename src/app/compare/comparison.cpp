@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -59,8 +60,29 @@ void keep_if_telling(Comparison& found, Frame frame, const media::Image& a, cons
       found.differing[std::size_t(i)].a = found.differing[std::size_t(i)].b = {};
 }
 
+// When frames of two movies are shown, since the first. The first that differs by more than the files round
+// times to is told: the same pixels at another speed are another film.
+class FrameTimes {
+ public:
+  void compare(const Frames& a, const Frames& b, Comparison& found) {
+    if (told_ || a.kind() != Frames::Kind::movie || b.kind() != Frames::Kind::movie) return;
+    const double left = *a.time(), right = *b.time();
+    if (found.compared == 0) first_a_ = left, first_b_ = right;
+    const double at_a = left - first_a_, at_b = right - first_b_;
+    if (std::abs(at_a - at_b) <= a.tick() + b.tick()) return;
+    told_ = true;
+    found.plain.push_back(
+        fmt::format("{} is at {:.4g} s in {} and at {:.4g} s in {}", a.name(), at_a, found.a, at_b, found.b));
+  }
+
+ private:
+  double first_a_ = 0, first_b_ = 0;  // s
+  bool told_ = false;
+};
+
 void compare_frames(Frames& a, Frames& b, Comparison& found) {
   media::Image left, right;
+  FrameTimes times;
   std::optional<Origin> first_a, first_b;
   for (;;) {
     if (interrupted()) return;
@@ -76,6 +98,7 @@ void compare_frames(Frames& a, Frames& b, Comparison& found) {
       break;
     }
     if (found.compared == 0) first_a = a.origin(), first_b = b.origin();
+    times.compare(a, b, found);
     Frame frame;
     frame.number = found.compared++;
     frame.name = a.name(), frame.time = a.time();
@@ -97,8 +120,6 @@ void compare_frames(Frames& a, Frames& b, Comparison& found) {
   const Frame& first = found.differing[std::size_t(found.first)];
   found.cause = cause(first.origin_a, first.origin_b);
 }
-
-const char* frames(std::int64_t n) { return n == 1 ? "frame" : "frames"; }
 
 std::string row(const Frame& frame, const std::string& mark) {
   const media::Difference& d = frame.difference;
@@ -180,8 +201,8 @@ std::string text(const Comparison& comparison) {
   if (c.same_bytes) return fmt::format("{} and {} are the same, byte by byte\n", c.a, c.b);
   if (c.same()) {
     all = c.still ? fmt::format("{} and {} show the same pixels", c.a, c.b)
-                  : fmt::format("{} and {} show the same pixels in all {} {}", c.a, c.b, c.compared,
-                                frames(c.compared));
+                  : fmt::format("{} and {} show the same pixels in all {}", c.a, c.b,
+                                counted(std::size_t(c.compared), "frame"));
     all += c.others.empty() ? "\n" : "; what they say of themselves differs:\n";
     for (const std::string& line : c.others) all += "  " + line + "\n";
     return all;
@@ -189,9 +210,11 @@ std::string text(const Comparison& comparison) {
   all = fmt::format("{} and {} differ", c.a, c.b);
   if (c.still) {
     all += fmt::format(": {}\n", sentence(c.differing.front()));
+  } else if (c.differing.empty()) {
+    all += fmt::format("; the pixels of {} are the same\n", counted(std::size_t(c.compared), "frame"));
   } else {
-    all += fmt::format(" in {} of {} {}\n", c.differing.size(), c.compared, frames(c.compared));
-    if (!c.differing.empty()) all += table(c);
+    all += fmt::format(" in {} of {}\n", c.differing.size(), counted(std::size_t(c.compared), "frame")) +
+           table(c);
   }
   for (const std::string& line : c.plain) all += "  " + line + "\n";
   if (c.cause) {

@@ -92,6 +92,8 @@ std::string Frames::name() const { return impl_->name; }
 std::optional<double> Frames::time() const { return impl_->time; }
 const std::optional<Origin>& Frames::origin() const { return impl_->origin; }
 
+double Frames::tick() const { return impl_->movie ? impl_->movie->facts().tick : 0; }
+
 bool Frames::next(media::Image& image) {
   Impl& it = *impl_;
   if (it.read > 0) doing("reading frame " + std::to_string(it.read));

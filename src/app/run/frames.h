@@ -34,6 +34,8 @@ class Frames {
   std::string name() const;
   std::optional<double> time() const;
   const std::optional<Origin>& origin() const;
+  /// Of a movie, s: to what the times of its frames are rounded; else 0.
+  double tick() const;
 
  private:
   struct Impl;

@@ -1,0 +1,81 @@
+// obscura compare and verify of films: when their frames are shown, which folders' pictures belong together,
+// and whether a film is one of the scene as it is today.
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "needs.h"
+#include "program.h"
+#include "where.h"
+
+namespace obscura::app {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class FilmsCompared : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    scene(kCrateAndBall + kFilm);
+  }
+  void film(const std::string& out, const std::string& flags = "") const {
+    const Outcome made = obscura("render scene.toml -o " + out + " " + flags);
+    ASSERT_EQ(made.exit, 0) << made.err;
+  }
+  // the scene with another [film], or another word anywhere
+  void change(const std::string& from, const std::string& to) const {
+    std::string text = kCrateAndBall + kFilm;
+    text.replace(text.find(from), from.size(), to);
+    scene(text, "today.toml");
+  }
+  Outcome verified(const std::string& file) const {
+    return obscura("verify " + file + " --scene today.toml");
+  }
+
+  const std::string kFilm = "[film]\nsize = [160, 90]\nfps = 10\n";
+};
+
+TEST_F(FilmsCompared, AnotherFrameRateIsTheCauseAndNotThePixels) {
+  film("a.mp4");
+  film("b.mp4", "--fps 5");
+  const Outcome run = obscura("compare a.mp4 b.mp4");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("frame 1 is at 0.1 s in a.mp4 and at 0.2 s in b.mp4"));
+  EXPECT_THAT(run.out, HasSubstr("cause: other frame rate: 10 and 5"));
+  EXPECT_THAT(run.out, Not(HasSubstr("pixels only")));
+}
+
+TEST_F(FilmsCompared, AnotherSpeedShowsOtherInstantsOfOneRun) {
+  film("a.mp4");
+  film("b.mp4", "--set film.speed=0.5");
+  const Outcome run = obscura("compare a.mp4 b.mp4");
+  EXPECT_THAT(run.out, HasSubstr("film.speed is left out and 0.5"));
+  EXPECT_THAT(run.out, HasSubstr("frames show other instants: frame 1 t = 0.1 s and t = 0.05 s"));
+  EXPECT_THAT(run.out, HasSubstr("at one instant states are the same"));
+  EXPECT_THAT(run.out, Not(HasSubstr("only the drawing differs")));
+  film("c.mp4", "--set film.speed=0.5 --set crate.mass=3");
+  EXPECT_THAT(obscura("compare a.mp4 c.mp4").out, HasSubstr("states part at step"));
+}
+
+TEST_F(FilmsCompared, TheSamePixelsAtHalfTheSpeedAreAnotherFilm) {
+  OBSCURA_NEEDS(installed("ffmpeg"), "ffmpeg");
+  film("a.mp4");
+  ASSERT_EQ(shell("ffmpeg -v error -itsscale 2 -i a.mp4 -c copy -movflags use_metadata_tags slow.mp4").exit,
+            0);
+  Outcome run = obscura("compare a.mp4 slow.mp4");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("a.mp4 and slow.mp4 differ; the pixels of 10 frames are the same"));
+  EXPECT_THAT(run.out, HasSubstr("frame 1 is at 0.1 s in a.mp4 and at 0.2 s in slow.mp4"));
+  run = obscura("verify slow.mp4");
+  EXPECT_EQ(run.exit, 1) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("frame 1 is at 0.2 s"));
+  // a file that is only packed otherwise, and rounds times otherwise, is the same film
+  ASSERT_EQ(shell("ffmpeg -v error -i a.mp4 -c copy a.mkv").exit, 0);
+  run = obscura("compare a.mp4 a.mkv");
+  EXPECT_EQ(run.exit, 0) << run.out;
+}
+
+}  // namespace
+}  // namespace obscura::app
