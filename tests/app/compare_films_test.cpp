@@ -77,5 +77,45 @@ TEST_F(FilmsCompared, TheSamePixelsAtHalfTheSpeedAreAnotherFilm) {
   EXPECT_EQ(run.exit, 0) << run.out;
 }
 
+TEST_F(FilmsCompared, FoldersWithThoseInThem) {
+  film("one.png", "--at 0.5"), film("two.png", "--at 0.9");
+  ASSERT_EQ(
+      shell("mkdir -p a/sub b/sub && cp one.png a/0.png && cp one.png b/0.png && cp one.png a/sub/k.png && "
+            "cp two.png b/sub/k.png")
+          .exit,
+      0);
+  Outcome run = obscura("compare a b");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("a and b differ in 1 of 2 frames"));
+  EXPECT_THAT(run.out, HasSubstr("sub/k.png"));
+  std::filesystem::remove(path("b/sub/k.png"));
+  run = obscura("compare a b");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("only a has sub/k.png"));
+  // what is compared is not written over there either
+  run = obscura("compare a b --diff a/sub/k.png");
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("which is compared"));
+}
+
+TEST_F(FilmsCompared, FoldersWithoutANameInCommonArePairedByOrderAndThatIsSaid) {
+  film("one.png", "--at 0.5"), film("two.png", "--at 0.9");
+  ASSERT_EQ(
+      shell(
+          "mkdir a b && cp one.png a/a.png && cp two.png a/b.png && cp one.png b/c.png && cp two.png b/d.png")
+          .exit,
+      0);
+  Outcome run = obscura("compare a b");
+  EXPECT_EQ(run.exit, 0);
+  EXPECT_THAT(run.out, HasSubstr("the folders have no name of a file in common"));
+  ASSERT_EQ(shell("cp one.png b/d.png").exit, 0);
+  run = obscura("compare a b");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("the folders have no name of a file in common"));
+  EXPECT_THAT(run.out, HasSubstr("b.png and d.png"));
+  const auto json = nlohmann::json::parse(obscura("compare a b --format json").out);
+  EXPECT_EQ(json["by_order"], true);
+}
+
 }  // namespace
 }  // namespace obscura::app

@@ -33,6 +33,15 @@ struct CompareFlags {
   bool interpolate = false;
 };
 
+// whether a file lies in a folder, or in one of those in it
+bool lies_in(const std::string& file, const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  if (!fs::is_directory(folder, none)) return false;
+  const fs::path way = fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(folder));
+  return !way.empty() && *way.begin() != "..";
+}
+
 // whether a file that is to be written is one of those that are read: A, B, or a picture in either folder
 void spare_inputs(const CompareFlags& flags) {
   namespace fs = std::filesystem;
@@ -40,8 +49,7 @@ void spare_inputs(const CompareFlags& flags) {
     if (!out || !fs::exists(*out)) continue;
     for (const std::string& in : {flags.a, flags.b}) {
       std::error_code none;
-      const bool inside = fs::is_directory(in, none) && fs::path(*out).extension() == ".png" &&
-                          fs::equivalent(fs::absolute(*out).parent_path(), in, none);
+      const bool inside = fs::path(*out).extension() == ".png" && lies_in(*out, in);
       if (inside || fs::equivalent(*out, in, none))
         throw UsageError(fmt::format("{} {}: would be written over {}, which is compared", name, *out,
                                      inside ? "a picture of " + in : in));

@@ -20,6 +20,8 @@ namespace obscura::app {
 namespace {
 
 constexpr std::size_t kMostRows = 12;  // of the table
+constexpr const char* kByOrder =
+    "  the folders have no name of a file in common: the first was compared with the first, and so on\n";
 
 using Frame = Comparison::Frame;
 
@@ -32,7 +34,9 @@ bool worse(const Frame& a, const Frame& b) {
   return key(a.difference) > key(b.difference);
 }
 
-// frames of two folders belong together by name, where they have names in common
+std::string pair_of(const std::string& a, const std::string& b) { return fmt::format("{} and {}", a, b); }
+
+// frames of two folders belong together by name, where they have names in common, and else by order
 void match(Frames& a, Frames& b, Comparison& found) {
   const std::set<std::string> left(a.names().begin(), a.names().end()),
       right(b.names().begin(), b.names().end());
@@ -40,7 +44,10 @@ void match(Frames& a, Frames& b, Comparison& found) {
   for (const std::string& name : a.names()) (right.contains(name) ? both : only_a).push_back(name);
   for (const std::string& name : b.names())
     if (!left.contains(name)) only_b.push_back(name);
-  if (both.empty()) return;
+  if (both.empty()) {
+    found.by_order = true;
+    return;
+  }
   if (!only_a.empty()) found.plain.push_back(fmt::format("only {} has {}", found.a, some_of(only_a)));
   if (!only_b.empty()) found.plain.push_back(fmt::format("only {} has {}", found.b, some_of(only_b)));
   a.only(both), b.only(both);
@@ -101,7 +108,7 @@ void compare_frames(Frames& a, Frames& b, Comparison& found) {
     times.compare(a, b, found);
     Frame frame;
     frame.number = found.compared++;
-    frame.name = a.name(), frame.time = a.time();
+    frame.name = found.by_order ? pair_of(a.name(), b.name()) : a.name(), frame.time = a.time();
     frame.origin_a = a.origin(), frame.origin_b = b.origin();
     if (left.width != right.width || left.height != right.height) {
       frame.sizes = true, frame.size_a = size(left), frame.size_b = size(right);
@@ -205,6 +212,7 @@ std::string text(const Comparison& comparison) {
                                 counted(std::size_t(c.compared), "frame"));
     all += c.others.empty() ? "\n" : "; what they say of themselves differs:\n";
     for (const std::string& line : c.others) all += "  " + line + "\n";
+    if (c.by_order) all += kByOrder;
     return all;
   }
   all = fmt::format("{} and {} differ", c.a, c.b);
@@ -216,6 +224,7 @@ std::string text(const Comparison& comparison) {
     all += fmt::format(" in {} of {}\n", c.differing.size(), counted(std::size_t(c.compared), "frame")) +
            table(c);
   }
+  if (c.by_order) all += kByOrder;
   for (const std::string& line : c.plain) all += "  " + line + "\n";
   if (c.cause) {
     all += fmt::format("cause: {}\n", c.cause->lines.empty() ? "not known" : c.cause->lines.front());
@@ -230,6 +239,7 @@ std::string json(const Comparison& comparison) {
   top["a"] = c.a, top["b"] = c.b;
   top["same"] = c.same(), top["same_bytes"] = c.same_bytes;
   top["frames"] = c.compared;
+  if (c.by_order) top["by_order"] = true;
   top["differing"] = nlohmann::ordered_json::array();
   for (const Frame& frame : c.differing) {
     nlohmann::ordered_json it;
