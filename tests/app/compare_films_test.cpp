@@ -117,5 +117,50 @@ TEST_F(FilmsCompared, FoldersWithoutANameInCommonArePairedByOrderAndThatIsSaid) 
   EXPECT_EQ(json["by_order"], true);
 }
 
+TEST_F(FilmsCompared, AFilmIsNoLongerTrueOfASceneThatIsFilmedOtherwise) {
+  film("f.mp4");
+  change("duration = 1", "duration = 1.0");
+  EXPECT_EQ(verified("f.mp4").exit, 0);
+  for (const auto& [from, to, told] :
+       {std::tuple("fps = 10", "fps = 5", "frame rate: 10, and now 5"),
+        {"size = [160, 90]", "size = [320, 180]", "size: 160x90, and now 320x180"},
+        {"duration = 1", "duration = 2", "frames: 10, and now 20"},
+        {"duration = 1", "duration = 0.5", "frames: 10, and now 5"},
+        {"fps = 10", "fps = 10\nspeed = 0.5", "frame 1: t = 0.1 s, and now t = 0.05 s"},
+        {"fps = 10", "fps = 10\ncrf = 45", "of 10 frames differ"}}) {
+    change(from, to);
+    const Outcome run = verified("f.mp4");
+    EXPECT_EQ(run.exit, 1) << to;
+    EXPECT_THAT(run.out, HasSubstr("f.mp4: no longer true")) << to;
+    EXPECT_THAT(run.out, HasSubstr(told)) << to;
+    EXPECT_THAT(run.out, HasSubstr("other scene (scene.toml): ")) << to;
+    EXPECT_THAT(run.out, Not(HasSubstr("--frames"))) << to;
+  }
+  // what shows in no state is left out where nothing is drawn
+  change("size = [160, 90]", "size = [320, 180]");
+  EXPECT_EQ(obscura("verify f.mp4 --states --scene today.toml").exit, 0);
+  film("f.png", "--at 0.5");
+  EXPECT_EQ(verified("f.png").exit, 1);
+}
+
+// A flag is given again: it stands over what the scene says, now as then.
+TEST_F(FilmsCompared, WhatAFlagSaidOfAFilmStaysSo) {
+  film("f.mp4", "--fps 5 --size 96x54 --crf 30 --to 0.6");
+  change("size = [160, 90]\nfps = 10", "size = [320, 180]\nfps = 20\ncrf = 45");
+  const Outcome run = verified("f.mp4");
+  EXPECT_EQ(run.exit, 0) << run.out;
+  change("duration = 1", "duration = 0.4");
+  EXPECT_THAT(verified("f.mp4").out, HasSubstr("its frames 0..2: the film has frames 0 to 1"));
+}
+
+TEST_F(FilmsCompared, AFilmWithKeysThatWereSetSaysSo) {
+  film("f.mp4", "--set crate.mass=2 --set seed=3");
+  scene(contents(path("scene.toml")), "today.toml");
+  const Outcome run = verified("f.mp4");
+  EXPECT_EQ(run.exit, 0) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("of the scene with --set crate.mass=2 --set seed=3, as it was made"));
+  EXPECT_THAT(obscura("verify f.mp4").out, Not(HasSubstr("--set")));
+}
+
 }  // namespace
 }  // namespace obscura::app

@@ -401,6 +401,7 @@ TEST_F(Verify, AnotherSimulatorsMovieIsToldByFrameAndBody) {
   EXPECT_THAT(run.out, HasSubstr("states of 10 frames: others"));
   EXPECT_THAT(run.out, HasSubstr("states differ from frame 7 (t = 0.7 s) on: body crate"));
   EXPECT_THAT(run.out, HasSubstr("it is by obscura"));
+  EXPECT_THAT(run.out, HasSubstr(", as this is: another build made it, or it was changed since"));
   // pixels are the same, and so said; the verdict is no
   const Outcome drawn = obscura("verify a.mp4");
   EXPECT_EQ(drawn.exit, 1);

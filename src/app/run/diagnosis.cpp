@@ -168,6 +168,21 @@ std::string other_scene(const Origin& a, const Origin& b) {
   return scene_line(a, b);
 }
 
+std::vector<std::string> filmed_otherwise(const Origin& a, const Origin& b, bool drawn) {
+  std::vector<std::string> lines;
+  if (drawn && (a.width != b.width || a.height != b.height))
+    lines.push_back(fmt::format("size: {}x{}, and now {}x{}", a.width, a.height, b.width, b.height));
+  if (a.frames == 0) return lines;
+  if (a.fps != b.fps) lines.push_back(fmt::format("frame rate: {}, and now {}", a.fps, b.fps));
+  const scene::Scene left = scene_of(a), right = scene_of(b);
+  const std::int64_t there = shots_of(a, left).size(), now = shots_of(b, right).size();
+  if (there != now) lines.push_back(fmt::format("frames: {}, and now {}", there, now));
+  if (const auto other = other_instant(a, left, b, right))
+    lines.push_back(
+        fmt::format("frame {}: t = {:g} s, and now t = {:g} s", other->frame, other->a, other->b));
+  return lines;
+}
+
 const char* name(Cause::Kind kind) {
   switch (kind) {
     case Cause::Kind::scene:
