@@ -1,6 +1,7 @@
 #include "app/compare/golden_case.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -135,6 +136,11 @@ void keep_picture(const GoldenCase& it, const Pictured& made) {
   if (!fs::exists(ignore)) write_text(ignore.string(), "*\n");
 }
 
+// " with --set ball.mass=2": a record is of the scene as its file says, and so are the pictures beside it
+std::string with_sets(const Origin& origin) {
+  return origin.sets.empty() ? "" : fmt::format(" with --set {}", fmt::join(origin.sets, " --set "));
+}
+
 // holds a moment against its hashes, and against the picture that they are of where it lies at hand
 void judge_record(const scene::Golden& golden, const GoldenRecord& record, const Pictured& made,
                   const GoldenOptions& options, GoldenCase& it) {
@@ -149,12 +155,17 @@ void judge_record(const scene::Golden& golden, const GoldenRecord& record, const
     // as if it were not there
   }
   if (picture && pixel_hash(picture->image) != reference.pixels) picture.reset();
+  if (const auto of = picture ? origin_in(picture->tags) : std::nullopt; of && !of->sets.empty())
+    picture.reset();
+  const bool text = record.scene == record_of({it.time}, {made}).scene;
+  const std::string sets = with_sets(made.origin);
   if (state && pixels) {
     it.state = "same";
-    if (record.scene != record_of({it.time}, {made}).scene)
-      it.lines.push_back("state and picture are the same; the text of the scene is another one");
+    if (!text) it.lines.push_back("state and picture are the same; the text of the scene is another one");
+    if (!sets.empty()) it.lines.push_back("state and picture are the same" + sets);
     try {
-      if (!picture) keep_picture(it, made);
+      // a picture tells what it is of
+      if (!picture && text && sets.empty()) keep_picture(it, made);
     } catch (const media::Error&) {
       // if the folder is not writable, the next difference is reported without it
     }
@@ -183,9 +194,10 @@ void judge_record(const scene::Golden& golden, const GoldenRecord& record, const
         fmt::format("the state is the same; drawn by another OpenGL, {} and {}", record.gl, now.gl));
   } else {
     it.state = "differs";
-    if (record.scene != now.scene)
-      it.lines.push_back("the scene's text is another one than the reference's");
-    else if (!state)
+    if (!text) it.lines.push_back("the scene's text is another one than the reference's");
+    if (!sets.empty())
+      it.lines.push_back("other scene: that of the reference" + sets);
+    else if (text && !state)
       it.lines.push_back("other state of the same scene");
     if (record.gl != now.gl) it.lines.push_back(fmt::format("other OpenGL: {} and {}", record.gl, now.gl));
   }
