@@ -169,6 +169,19 @@ TEST_F(GoldenKept, ByAHashAKeyThatWasSetIsNamedAndLeavesNoPicture) {
   EXPECT_TRUE(std::filesystem::exists(path("golden/pictures/scene-0.png")));
 }
 
+// The verdict does not need the pictures of it.
+TEST_F(GoldenKept, WhereItsPicturesCannotBeWrittenTheDifferenceIsTold) {
+  ASSERT_EQ(golden("--update").exit, 0);
+  change("\"green\"", "\"purple\"");
+  scene("no folder", "render_out");
+  const Outcome run = golden();
+  EXPECT_EQ(run.exit, 4);
+  EXPECT_THAT(run.out, HasSubstr("pixels differ by up to"));
+  EXPECT_THAT(run.out, HasSubstr("ball.color is \"green\" and \"purple\""));
+  EXPECT_THAT(run.out, HasSubstr("render_out/golden"));
+  EXPECT_THAT(run.out, HasSubstr("1 scene, 2 moments, 2 differs"));
+}
+
 TEST_F(GoldenKept, ARecordThatCannotBeReadSaysSoAndIsReplaced) {
   change("at = [0, 0.5]", "keep = \"hash\"\nat = [0, 0.5]");
   ASSERT_EQ(golden("--update").exit, 0);

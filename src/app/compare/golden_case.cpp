@@ -32,17 +32,24 @@ void write(const std::string& path, const Pictured& made) {
   media::write_png(path, made.image, {.tags = made.origin.tags("")});
 }
 
-// leaves the picture of what fails, and the difference, for a person to look at
+// Leaves the picture of what fails, and the difference, for a person to look at. Where they cannot be written
+// the verdict stands all the same.
 void leave_evidence(const std::string& made_of, const Pictured& made, const GoldenOptions& options,
                     GoldenCase& it) {
   const std::string stem = actual_of(made_of, options) + "-" + it.time;
   const std::string actual = stem + ".png";
-  write(actual, made);
-  it.attachments.push_back(actual);
-  if (!it.expected) return;
-  const std::string difference = stem + ".difference.png";
-  media::write_png(difference, media::difference_picture(*it.expected, made.image));
-  it.attachments.push_back(difference);
+  try {
+    write(actual, made);
+    it.attachments.push_back(actual);
+    it.lines.push_back(actual + " is what there is now; --update takes it");
+    if (!it.expected) return;
+    const std::string difference = stem + ".difference.png";
+    media::write_png(difference, media::difference_picture(*it.expected, made.image));
+    it.attachments.push_back(difference);
+  } catch (const media::Error& error) {
+    it.exit = kFiles;
+    it.lines.push_back(error.what());
+  }
 }
 
 bool other_gl(const Origin& a, const Origin& b) {
@@ -461,7 +468,6 @@ std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOpti
       if (!golden.hashes) write(it.file, made[i]);
     } else if (!it.good()) {
       leave_evidence(scene.file, made[i], options, it);
-      it.lines.push_back(it.attachments.front() + " is what there is now; --update takes it");
     }
     cases.push_back(std::move(it));
   }
