@@ -181,6 +181,15 @@ TEST_F(Compare, WritesOverNoneOfItsInputs) {
   EXPECT_EQ(obscura("compare left right --diff left.png").exit, 1);
 }
 
+// A difference that nobody was told is no answer.
+TEST_F(Compare, StandardOutputThatIsFullIsAnError) {
+  still("a.png");
+  still("b.png", "--theme screen");
+  const Outcome run = obscura("compare a.png b.png > /dev/full");
+  EXPECT_EQ(run.exit, 4);
+  EXPECT_THAT(run.err, HasSubstr("standard output: cannot write"));
+}
+
 TEST_F(Compare, WhoeverDrawsCanBeToldWithWhat) {
   // EGL without a library of its own cannot be had: whoever takes it says so
   const std::string without =
