@@ -190,6 +190,14 @@ TEST_F(Compare, StandardOutputThatIsFullIsAnError) {
   EXPECT_THAT(run.err, HasSubstr("standard output: cannot write"));
 }
 
+TEST_F(Compare, APageIsNotComparedAndThatIsSaid) {
+  ASSERT_EQ(obscura("render scene.toml -o a.html").exit, 0);
+  const Outcome run = obscura("compare a.html a.html");
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err,
+              HasSubstr("a.html: is a page, and no page is compared: `obscura verify` makes it again"));
+}
+
 TEST_F(Compare, WhoeverDrawsCanBeToldWithWhat) {
   // EGL without a library of its own cannot be had: whoever takes it says so
   const std::string without =

@@ -59,6 +59,11 @@ void spare_inputs(const CompareFlags& flags) {
   if (flags.report) require_ending("--report", *flags.report, ".html");
 }
 
+void refuse_page(const std::string& path) {
+  if (std::filesystem::path(path).extension() == ".html")
+    throw UsageError(path + ": is a page, and no page is compared: `obscura verify` makes it again");
+}
+
 bool is_table(const std::string& path) {
   const auto ending = std::filesystem::path(path).extension();
   return ending == ".csv" || ending == ".json";
@@ -106,6 +111,7 @@ void write_report(const Comparison& found, const std::string& path) {
 }
 
 int run(const CompareFlags& flags) {
+  for (const std::string& each : {flags.a, flags.b}) refuse_page(each);
   if (is_table(flags.a) != is_table(flags.b))
     throw UsageError(fmt::format("{} is a table and {} is not", is_table(flags.a) ? flags.a : flags.b,
                                  is_table(flags.a) ? flags.b : flags.a));
