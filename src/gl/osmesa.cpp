@@ -1,16 +1,19 @@
 #include <dlfcn.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <mutex>
 #include <new>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -84,17 +87,23 @@ class OsMesaLibraries {
   }
 
   // The library that has this function once more, from a file in memory: to the loader it is another. The
-  // file stays open, so that no other has its name. Null where that cannot be.
+  // file stays open, so that no other has its name. Null where that cannot be: it counts as a file that is
+  // as large as it may be (ulimit -f), and half a library, mapped, ends the program with SIGBUS.
   template <class F>
   static void* copied(F function) {
     Dl_info info{};
     if (!dladdr(reinterpret_cast<void*>(function), &info) || !info.dli_fname) return nullptr;
+    std::error_code none;
+    const std::uintmax_t size = std::filesystem::file_size(info.dli_fname, none);
+    rlimit most{};
+    if (none || ::getrlimit(RLIMIT_FSIZE, &most) != 0 || size > most.rlim_cur) return nullptr;
     std::ifstream from(info.dli_fname, std::ios::binary);
     const int file = memfd_create("libOSMesa", MFD_CLOEXEC);
     if (file < 0) return nullptr;
     const std::string name = "/proc/self/fd/" + std::to_string(file);
     void* handle = nullptr;
-    if (std::ofstream to(name, std::ios::binary); to << from.rdbuf() && to.flush())
+    if (std::ofstream to(name, std::ios::binary);
+        to << from.rdbuf() && to.flush() && std::filesystem::file_size(name, none) == size)
       handle = dlopen(name.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) ::close(file);
     return handle;

@@ -50,6 +50,7 @@ namespace obscura::media {
   F(avcodec, av_packet_unref)                 \
   F(avcodec, avcodec_alloc_context3)          \
   F(avcodec, avcodec_find_decoder)            \
+  F(avcodec, avcodec_find_decoder_by_name)    \
   F(avcodec, avcodec_find_encoder_by_name)    \
   F(avcodec, avcodec_free_context)            \
   F(avcodec, avcodec_get_name)                \

@@ -45,6 +45,16 @@ std::string text(const AVDictionary* dictionary, const char* key) {
   return entry ? entry->value : "";
 }
 
+// A webm keeps alpha as a second stream of VP9 (or VP8), beside the bytes of each packet.
+bool has_alpha_beside(const AVStream& stream) { return text(stream.metadata, "alpha_mode") == "1"; }
+
+// FFmpeg's own decoder of VP9 leaves alpha out; libvpx's reads it.
+const AVCodec* decoder_of(const AVStream& stream) {
+  const AVCodecID codec = stream.codecpar->codec_id;
+  if (!has_alpha_beside(stream)) return libav().avcodec_find_decoder(codec);
+  return libav().avcodec_find_decoder_by_name(codec == AV_CODEC_ID_VP8 ? "libvpx" : "libvpx-vp9");
+}
+
 }  // namespace
 
 void MovieReader::Impl::open() {
@@ -57,10 +67,11 @@ void MovieReader::Impl::open() {
   code = libav().av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   if (code < 0) throw Error(path + ": has no moving picture");
   stream = format->streams[code];
-  codec = libav().avcodec_find_decoder(stream->codecpar->codec_id);
+  codec = decoder_of(*stream);
   if (!codec)
-    throw Error(
-        fmt::format("{}: no decoder of {}", path, libav().avcodec_get_name(stream->codecpar->codec_id)));
+    throw Error(fmt::format("{}: no decoder of {}{}", path,
+                            libav().avcodec_get_name(stream->codecpar->codec_id),
+                            has_alpha_beside(*stream) ? " with transparency: it needs libvpx" : ""));
 
   decoder.reset(libav().avcodec_alloc_context3(codec));
   if (!decoder || libav().avcodec_parameters_to_context(decoder.get(), stream->codecpar) < 0)
@@ -76,6 +87,7 @@ void MovieReader::Impl::open() {
   facts.fps_num = rate.num;
   facts.fps_den = rate.den > 0 ? rate.den : 1;
   facts.frames = stream->nb_frames;
+  facts.tick = av_q2d(stream->time_base);
   facts.codec = libav().avcodec_get_name(stream->codecpar->codec_id);
   facts.tags = tags_of_comment(text(format->metadata, "comment"));
   const std::string title = text(format->metadata, "title");

@@ -13,12 +13,13 @@ struct MovieFacts {
   int width = 0, height = 0;
   std::int64_t fps_num = 0, fps_den = 1;
   std::int64_t frames = 0;  // 0: the file does not say
+  double tick = 0;          // s, to which times of frames are rounded
   std::string codec;        // "h264"
   Tags tags;                // those of the comment, and the title as "Title"
 };
 
 /// Hands out the frames of a movie in order, as RGBA8 with values 0 to 255, converted by the matrix and range
-/// the file is tagged with (bt709, limited, where it is silent).
+/// the file is tagged with (bt709, limited, where it is silent), and with the alpha that it carries.
 class MovieReader {
  public:
   /// Throws media::Error naming the path where it is no movie.

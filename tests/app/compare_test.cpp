@@ -181,6 +181,23 @@ TEST_F(Compare, WritesOverNoneOfItsInputs) {
   EXPECT_EQ(obscura("compare left right --diff left.png").exit, 1);
 }
 
+// A difference that nobody was told is no answer.
+TEST_F(Compare, StandardOutputThatIsFullIsAnError) {
+  still("a.png");
+  still("b.png", "--theme screen");
+  const Outcome run = obscura("compare a.png b.png > /dev/full");
+  EXPECT_EQ(run.exit, 4);
+  EXPECT_THAT(run.err, HasSubstr("standard output: cannot write"));
+}
+
+TEST_F(Compare, APageIsNotComparedAndThatIsSaid) {
+  ASSERT_EQ(obscura("render scene.toml -o a.html").exit, 0);
+  const Outcome run = obscura("compare a.html a.html");
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err,
+              HasSubstr("a.html: is a page, and no page is compared: `obscura verify` makes it again"));
+}
+
 TEST_F(Compare, WhoeverDrawsCanBeToldWithWhat) {
   // EGL without a library of its own cannot be had: whoever takes it says so
   const std::string without =
@@ -225,6 +242,40 @@ TEST_F(Runs, AreMatchedByNamesAndTimesAndInterpolatedOnlyIfTold) {
   EXPECT_THAT(run.out, HasSubstr("b.csv has no ball"));
 }
 
+// A table that leaves out where a body is, or a component, shows another run; what may be left out is told.
+TEST_F(Runs, WhatWasAskedForAndIsNotThereIsADifference) {
+  const std::string names =
+      "time,step,hash,energy.total,ball.position.x,ball.position.y,ball.angle,ball.velocity.x,ball.velocity."
+      "y,ball.charge\n";
+  scene(names + "0,0,f,1,2,3,4,5,6,7\n", "a.csv");
+  const auto without = [&](const std::string& table) {
+    scene(table, "b.csv");
+    return obscura("compare a.csv b.csv");
+  };
+  Outcome run = without("time,ball.position.x,ball.position.y,ball.charge\n0,2,3,7\n");
+  EXPECT_EQ(run.exit, 0) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("not compared, because only a.csv has it: energy.total, ball.angle, "
+                                 "ball.velocity.x, ball.velocity.y"));
+  EXPECT_THAT(run.out, HasSubstr("never compared: hash, step"));
+  for (const auto& [table, lacking] :
+       {std::pair("time,ball.position.x,ball.charge\n0,2,7\n", "ball.position.y"),
+        {"time,ball.position.x,ball.position.y,ball.velocity.x,ball.charge\n0,2,3,5,7\n", "ball.velocity.y"},
+        {"time,ball.position.x,ball.position.y\n0,2,3\n", "ball.charge"}}) {
+    run = without(table);
+    EXPECT_EQ(run.exit, 1) << lacking;
+    EXPECT_THAT(run.out, HasSubstr("a.csv and b.csv differ")) << lacking;
+    EXPECT_THAT(run.out, HasSubstr(std::string("b.csv has no column ") + lacking + "\n"));
+  }
+}
+
+TEST_F(Runs, WhatOfJsonIsNoColumnIsTold) {
+  ASSERT_EQ(obscura("states scene.toml --at 0.5 > a.json").exit, 0);
+  const Outcome run = obscura("compare a.json a.json");
+  EXPECT_EQ(run.exit, 0);
+  EXPECT_THAT(run.out, HasSubstr("never compared: hash, "));
+  EXPECT_THAT(run.out, HasSubstr("bodies.at_rest"));
+}
+
 TEST_F(Runs, TakeAWholeTurnAndTheOtherQuaternionForTheSame) {
   scene("time,a.angle,b.orientation.x,b.orientation.y,b.orientation.z,b.orientation.w\n0,7,0,0,0.6,0.8\n",
         "a.csv");
@@ -233,7 +284,11 @@ TEST_F(Runs, TakeAWholeTurnAndTheOtherQuaternionForTheSame) {
       "0,"
       "-0.6,-0.8\n",
       "b.csv");
-  EXPECT_EQ(obscura("compare a.csv b.csv --atol 1e-12").exit, 0);
+  const Outcome run = obscura("compare a.csv b.csv --atol 1e-12");
+  EXPECT_EQ(run.exit, 0);
+  EXPECT_THAT(run.out, HasSubstr("compared without whole turns, by which they differ: a.angle"));
+  scene("time,a.angle\n0,0\n1,0.5\n", "b.csv");
+  EXPECT_THAT(obscura("compare b.csv b.csv").out, Not(HasSubstr("turns")));
 }
 
 TEST_F(Runs, AreTakenAsJsonTooAsStatesWritesIt) {
@@ -401,6 +456,7 @@ TEST_F(Verify, AnotherSimulatorsMovieIsToldByFrameAndBody) {
   EXPECT_THAT(run.out, HasSubstr("states of 10 frames: others"));
   EXPECT_THAT(run.out, HasSubstr("states differ from frame 7 (t = 0.7 s) on: body crate"));
   EXPECT_THAT(run.out, HasSubstr("it is by obscura"));
+  EXPECT_THAT(run.out, HasSubstr(", as this is: another build made it, or it was changed since"));
   // pixels are the same, and so said; the verdict is no
   const Outcome drawn = obscura("verify a.mp4");
   EXPECT_EQ(drawn.exit, 1);

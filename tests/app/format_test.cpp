@@ -188,6 +188,7 @@ TEST(GitHub, FilesAreSeenFromTheTopOfTheCheckout) {
   ::unsetenv("GITHUB_WORKSPACE");
   EXPECT_EQ(inside, "::error file=" + here.filename().string() + "/a.toml::\n");
   EXPECT_EQ(outside, "::error file=/a.toml::\n");
+  EXPECT_EQ(github::command({.file = "./sub/../a.toml"}), "::error file=a.toml::\n");
 }
 
 TEST(GitHub, NoLineOfALogIsACommand) {

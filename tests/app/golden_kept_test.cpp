@@ -154,6 +154,34 @@ TEST_F(GoldenKept, ByAHashAStateThatDoesNotShowFailsAllTheSame) {
   EXPECT_THAT(run.out, HasSubstr("the state is another one, though the picture is the same"));
 }
 
+// A key that was set is the cause, and a picture made with it is none of the record's.
+TEST_F(GoldenKept, ByAHashAKeyThatWasSetIsNamedAndLeavesNoPicture) {
+  change("at = [0, 0.5]", "keep = \"hash\"\nat = [0, 0.5]");
+  ASSERT_EQ(golden("--update").exit, 0);
+  std::filesystem::remove_all(path("golden/pictures"));
+  const Outcome run = golden("--set 'room.gravity=[0,-1]'");
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("other scene: that of the reference with --set room.gravity=[0,-1]"));
+  EXPECT_THAT(run.out, Not(HasSubstr("of the same scene")));
+  EXPECT_THAT(run.out, HasSubstr("t = 0 s: state and picture are the same with --set room.gravity=[0,-1]"));
+  EXPECT_FALSE(std::filesystem::exists(path("golden/pictures")));
+  ASSERT_EQ(golden().exit, 0);
+  EXPECT_TRUE(std::filesystem::exists(path("golden/pictures/scene-0.png")));
+}
+
+// The verdict does not need the pictures of it.
+TEST_F(GoldenKept, WhereItsPicturesCannotBeWrittenTheDifferenceIsTold) {
+  ASSERT_EQ(golden("--update").exit, 0);
+  change("\"green\"", "\"purple\"");
+  scene("no folder", "render_out");
+  const Outcome run = golden();
+  EXPECT_EQ(run.exit, 4);
+  EXPECT_THAT(run.out, HasSubstr("pixels differ by up to"));
+  EXPECT_THAT(run.out, HasSubstr("ball.color is \"green\" and \"purple\""));
+  EXPECT_THAT(run.out, HasSubstr("render_out/golden"));
+  EXPECT_THAT(run.out, HasSubstr("1 scene, 2 moments, 2 differs"));
+}
+
 TEST_F(GoldenKept, ARecordThatCannotBeReadSaysSoAndIsReplaced) {
   change("at = [0, 0.5]", "keep = \"hash\"\nat = [0, 0.5]");
   ASSERT_EQ(golden("--update").exit, 0);

@@ -282,7 +282,7 @@ TEST_F(Golden, OnlyTheMomentThatIsNamedIsTaken) {
   const std::string before = contents(path("golden/scene-0.png"));
   Outcome run = golden("--update --only scene@0.5");
   EXPECT_EQ(run.exit, 0) << run.out << run.err;
-  EXPECT_THAT(run.out, HasSubstr("1 moments, 1 updated"));
+  EXPECT_THAT(run.out, HasSubstr("1 moment, 1 updated"));
   EXPECT_EQ(contents(path("golden/scene-0.png")), before);
   EXPECT_TRUE(std::filesystem::exists(path("golden/scene-1.75.png"))) << "what was not named is left alone";
   run = golden();

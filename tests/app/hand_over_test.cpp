@@ -5,7 +5,9 @@
 #include <filesystem>
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
+#include "media/movie.h"
 #include "media/png.h"
 #include "needs.h"
 #include "page/page.h"
@@ -57,6 +59,30 @@ TEST_F(HandOver, MoviesCarryTheirAlpha) {
       EXPECT_LE(largest, most) << file << " " << frame;
     }
     EXPECT_FALSE(fs::exists(path(std::string(file) + ".d/020.png")));
+  }
+}
+
+/// Two films of one colour that differ in nothing but alpha.
+TEST_F(HandOver, CompareSeesTheAlphaOfAMovie) {
+  for (const std::string ending : {".webm", ".mov"}) {
+    for (const auto& [name, alpha] : {std::pair("a", 255), {"b", 128}}) {
+      const media::MovieSpec spec{.width = 64, .height = 32, .fps_num = 10, .alpha = true};
+      const std::string file = path(name + ending);
+      media::SegmentEncoder encoder(file, spec);
+      media::Image image{64, 32, std::vector<std::uint8_t>(4 * 64 * 32, 100)};
+      for (std::size_t i = 3; i < image.pixels.size(); i += 4) image.pixels[i] = std::uint8_t(alpha);
+      for (int frame = 0; frame < 3; ++frame) encoder.add(image);
+      media::MovieWriter writer(file, spec);
+      writer.add(encoder.finish());
+      writer.close();
+    }
+    const Outcome run = obscura("compare --format json a" + ending + " b" + ending);
+    EXPECT_EQ(run.exit, 1) << run.out;
+    const auto json = nlohmann::json::parse(run.out);
+    ASSERT_EQ(json["differing"].size(), 3u) << ending;
+    EXPECT_EQ(json["differing"][0]["alpha_only"], true) << ending;
+    // to the level that ten bits round to
+    EXPECT_NEAR(json["differing"][0]["largest"].get<int>(), 255 - 128, 1) << ending;
   }
 }
 

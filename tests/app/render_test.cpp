@@ -77,6 +77,18 @@ TEST_F(Render, ADraftTakesPresetsOnlyWhereThereAreSome) {
   EXPECT_NE(run.err.find("presets are those of libx264 and libx265"), std::string::npos) << run.err;
 }
 
+// Workers draw with copies of OSMesa in memory, which count as files: where they may not be so large, workers
+// share one.
+TEST_F(Render, FilesThatMayNotBeLargeAreNoLimitOnWorkers) {
+  scene(kCrateAndBall);
+  for (const char* blocks : {"200", "2000", "20000"}) {
+    const Outcome run =
+        shell(std::string("ulimit -f ") + blocks +
+              "; " OBSCURA_BINARY " render scene.toml --size 96x54 --fps 10 -j 2 -o 'a/{frame:02}.png'");
+    EXPECT_EQ(run.exit, 0) << blocks << run.err;
+  }
+}
+
 TEST_F(Render, TwiceGivesTheSameBytesOnOneWorkerAndThree) {
   scene(kRoom);
   for (const char* flags : {"a.mp4 -j 1", "b.mp4 -j 3", "c.mp4 -j 3"}) {

@@ -33,6 +33,15 @@ struct CompareFlags {
   bool interpolate = false;
 };
 
+// whether a file lies in a folder, or in one of those in it
+bool lies_in(const std::string& file, const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  if (!fs::is_directory(folder, none)) return false;
+  const fs::path way = fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(folder));
+  return !way.empty() && *way.begin() != "..";
+}
+
 // whether a file that is to be written is one of those that are read: A, B, or a picture in either folder
 void spare_inputs(const CompareFlags& flags) {
   namespace fs = std::filesystem;
@@ -40,8 +49,7 @@ void spare_inputs(const CompareFlags& flags) {
     if (!out || !fs::exists(*out)) continue;
     for (const std::string& in : {flags.a, flags.b}) {
       std::error_code none;
-      const bool inside = fs::is_directory(in, none) && fs::path(*out).extension() == ".png" &&
-                          fs::equivalent(fs::absolute(*out).parent_path(), in, none);
+      const bool inside = fs::path(*out).extension() == ".png" && lies_in(*out, in);
       if (inside || fs::equivalent(*out, in, none))
         throw UsageError(fmt::format("{} {}: would be written over {}, which is compared", name, *out,
                                      inside ? "a picture of " + in : in));
@@ -49,6 +57,11 @@ void spare_inputs(const CompareFlags& flags) {
   }
   if (flags.diff) require_ending("--diff", *flags.diff, ".png");
   if (flags.report) require_ending("--report", *flags.report, ".html");
+}
+
+void refuse_page(const std::string& path) {
+  if (std::filesystem::path(path).extension() == ".html")
+    throw UsageError(path + ": is a page, and no page is compared: `obscura verify` makes it again");
 }
 
 bool is_table(const std::string& path) {
@@ -98,6 +111,7 @@ void write_report(const Comparison& found, const std::string& path) {
 }
 
 int run(const CompareFlags& flags) {
+  for (const std::string& each : {flags.a, flags.b}) refuse_page(each);
   if (is_table(flags.a) != is_table(flags.b))
     throw UsageError(fmt::format("{} is a table and {} is not", is_table(flags.a) ? flags.a : flags.b,
                                  is_table(flags.a) ? flags.b : flags.a));
@@ -140,10 +154,12 @@ OBSCURA_COMMAND(100, compare) {
       "(solid), the box around them. If both files carry their origin, as all that obscura writes do, "
       "compare names the cause: other scene, other state (both are simulated again to find the step, body "
       "and quantity of the first difference), other look, other OpenGL, or pixels only.\n"
-      "Runs are tables as `obscura states` writes them, as CSV or JSON. A is the reference: its columns and "
-      "its "
-      "times must be in B. Times within half a microsecond are equal; values need |b - a| <= atol + rtol "
-      "|a|; inf and nan are equal only to themselves.\n\n"
+      "Folders are compared with those in them, by the names of their files; where no name is in both, in "
+      "order. Movies that show the same frames at other times differ.\n"
+      "Runs are tables as `obscura states` writes them, as CSV or JSON. A is the reference: its times and "
+      "its bodies' positions must be in B, and each component of a quantity that B has; other quantities "
+      "that B leaves out are told. Times within half a microsecond are equal; values need |b - a| <= atol "
+      "+ rtol |a|, angles without whole turns; inf and nan are equal only to themselves.\n\n"
       "Exit codes: 0 the same, 1 they differ, 2 usage, 4 something cannot be read.\n\n"
       "Examples:\n"
       "  obscura compare old.png new.png --diff difference.png\n"

@@ -275,8 +275,8 @@ int golden(GoldenFlags& flags) {
   std::string sum;
   for (const auto& [state, count] : states) sum += fmt::format(", {} {}", count, state);
   print(flags.format,
-        fmt::format("{} scenes, {} moments{}; {:.1f} s\n", all.size(), cases.size(), sum,
-                    std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count()));
+        fmt::format("{}, {}{}; {:.1f} s\n", counted(all.size(), "scene"), counted(cases.size(), "moment"),
+                    sum, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count()));
   if (flags.format == Format::json) fmt::print("{}", golden_json(cases, exit));
   if (flags.format == Format::github) fmt::print("{}", golden_annotations(cases));
   if (flags.junit) write_text(*flags.junit, junit(cases));

@@ -83,7 +83,7 @@ int complain(int code, const std::string& what) {
 // Flush stdout and report write errors; a closed pipe is not an error.
 int said(int code) {
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return code;
-  if (errno == EPIPE || code != kDone) return code;
+  if (errno == EPIPE || (code != kDone && code != kDiffers)) return code;
   return complain(kFiles, fmt::format("standard output: cannot write: {}", std::strerror(errno)));
 }
 

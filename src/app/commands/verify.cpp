@@ -8,6 +8,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "app/compare/comparison.h"
@@ -91,6 +92,15 @@ void judge_still(const media::Image& image, const Origin& origin, const Origin& 
   for (const std::string& line : cause(origin, made.origin).lines) verdict.lines.push_back("  " + line);
 }
 
+// what made other states of the same scene
+std::string by_whom(const Origin& origin) {
+  if (!origin.trajectory.empty()) return "it shows other numbers than the table has";
+  if (origin.version != OBSCURA_VERSION)
+    return fmt::format("it is by obscura {}, and this is {}", origin.version, OBSCURA_VERSION);
+  return fmt::format("it is by obscura {}, as this is: another build made it, or it was changed since",
+                     origin.version);
+}
+
 // the states that a file's origin tells of, and those that are there now
 void judge_states(const Origin& origin, const Origin& now, Verdict& verdict) {
   const bool still = origin.frames == 0;
@@ -105,8 +115,7 @@ void judge_states(const Origin& origin, const Origin& now, Verdict& verdict) {
     if (origin.scene_text == now.scene_text) {
       if (const std::string line = first_difference(origin, now); !line.empty())
         verdict.lines.push_back("  " + line);
-      verdict.lines.push_back(
-          fmt::format("  it is by obscura {}, and this is {}", origin.version, OBSCURA_VERSION));
+      verdict.lines.push_back("  " + by_whom(origin));
     } else {
       for (const std::string& line : cause(origin, now).lines) verdict.lines.push_back("  " + line);
     }
@@ -131,7 +140,9 @@ void judge_movie(const std::string& file, const std::string& again, Verdict& ver
   const Comparison found = compare(file, again);
   if (found.same_bytes) return verdict.lines.push_back("movie: the same, byte by byte");
   if (found.same()) return verdict.lines.push_back("movie: the same pixels in all frames");
-  verdict.no(fmt::format("movie: {} of {} frames differ", found.differing.size(), found.compared));
+  verdict.no(found.differing.empty()
+                 ? "movie: the same pixels, but not the same film"
+                 : fmt::format("movie: {} of {} frames differ", found.differing.size(), found.compared));
   for (const std::string& line : found.plain) verdict.lines.push_back("  " + line);
   if (found.worst >= 0) {
     const auto& worst = found.differing[std::size_t(found.worst)];
@@ -162,14 +173,66 @@ std::shared_ptr<const Table> run_of(const std::string& file, const Origin& origi
       file, origin.trajectory));
 }
 
-Origin with_another_scene(const Origin& origin, const std::string& file, const VerifyFlags& flags) {
+// A flag of render takes the place of what the scene says: where the file is as its scene said, it was not
+// given, and what the scene says today counts.
+template <typename T>
+void take(T& now, const T& then, const T& today) {
+  if (now == then) now = today;
+}
+
+bool reads_scene(const Origin& origin) {
+  try {
+    (void)scene::parse(origin.scene_text, origin.scene_file, origin.sets);
+    return true;
+  } catch (const scene::Error&) {
+    return false;
+  }
+}
+
+// what the same command would make of another scene: what no flag said is as that scene says
+void take_film(const Origin& origin, Origin& now) {
+  const auto said = [](const Origin& by) {
+    const scene::Scene scene = scene::parse(by.scene_text, by.scene_file, by.sets);
+    Origin origin_said = origin_of(scene);
+    origin_said.preset = scene.film.preset, origin_said.crf = scene.film.crf;
+    return std::pair(origin_said, scene.film.codec);
+  };
+  const auto [then, codec_then] = said(origin);
+  const auto [today, codec_today] = said(now);
+  if (now.width == then.width && now.height == then.height)
+    now.width = today.width, now.height = today.height;
+  take(now.fps, then.fps, today.fps), take(now.theme, then.theme, today.theme);
+  take(now.camera, then.camera, today.camera);
+  take(now.preset, then.preset, today.preset), take(now.crf, then.crf, today.crf);
+  if (codec_then != codec_today) now.encoder = codec_today;
+  if (origin.frames == 0) return;
+  // all frames that there were are all that there are
+  const auto all = [](Origin of) {
+    of.shots.clear();
+    return shots_of(of, scene_of(of)).text();
+  };
+  if (origin.shots == all(origin)) now.shots = all(now);
+}
+
+// The origin of what is made again. None where the scene of today is another film, which is told.
+std::optional<Origin> made_again(const Origin& origin, const std::string& file, const VerifyFlags& flags,
+                                 Verdict& verdict) {
   Origin now = origin;
   if (!origin.trajectory.empty()) now.run = run_of(file, origin, flags);
-  if (flags.scene) {
-    now.scene_text = flags.scene_text;
-    now.scene_hash = hash(now.scene_text);
-  }
-  return now;
+  if (!flags.scene) return now;
+  if (!origin.sets.empty())
+    verdict.lines.push_back(
+        fmt::format("of the scene with --set {}, as it was made", fmt::join(origin.sets, " --set ")));
+  now.scene_text = flags.scene_text;
+  now.scene_hash = hash(now.scene_text);
+  // an old scene that is not read any more does not tell which were flags
+  if (!reads_scene(origin)) return now;
+  take_film(origin, now);
+  const auto otherwise = filmed_otherwise(origin, now, !flags.states);
+  if (otherwise.empty()) return now;
+  for (const std::string& line : otherwise) verdict.no(line);
+  if (const std::string line = other_scene(origin, now); !line.empty()) verdict.lines.push_back("  " + line);
+  return {};
 }
 
 // only that program can compute them again
@@ -188,16 +251,17 @@ Verdict judge_page(const std::string& file, const VerifyFlags& flags) {
   refuse_programs(file, *origin);
   Verdict verdict;
   if (hash(origin->scene_text) != origin->scene_hash) verdict.no("scene: its text does not match its hash");
-  Origin now = with_another_scene(*origin, file, flags);
+  std::optional<Origin> now = made_again(*origin, file, flags, verdict);
+  if (!now) return verdict;
   if (flags.states) {
-    const auto again = simulated(now);
+    const auto again = simulated(*now);
     if (again) judge_states(*origin, *again, verdict);
     return verdict;
   }
   const Workbench bench;
   const std::string again = (bench.folder / fs::path(file).filename()).string();
-  if (!page_again(flags, again, now)) return verdict;
-  judge_states(*origin, now, verdict);
+  if (!page_again(flags, again, *now)) return verdict;
+  judge_states(*origin, *now, verdict);
   verdict.only.clear();
   if (file_bytes(again) == bytes)
     verdict.lines.push_back("page: the same, byte by byte");
@@ -218,22 +282,23 @@ Verdict judge(const std::string& file, const VerifyFlags& flags) {
   refuse_programs(file, origin);
   Verdict verdict;
   if (hash(origin.scene_text) != origin.scene_hash) verdict.no("scene: its text does not match its hash");
-  Origin now = with_another_scene(origin, file, flags);
+  std::optional<Origin> now = made_again(origin, file, flags, verdict);
+  if (!now) return verdict;
   if (flags.states || frames.kind() == Frames::Kind::still) {
-    const auto again = simulated(now);
+    const auto again = simulated(*now);
     if (interrupted()) return verdict;
     if (!again) {
       verdict.no(fmt::format("state at t = {:g} s: the run ends before it", sim::value(origin.shot->time)));
       return verdict;
     }
     judge_states(origin, *again, verdict);
-    if (!flags.states) judge_still(image, origin, now, flags, verdict);
+    if (!flags.states) judge_still(image, origin, *now, flags, verdict);
     return verdict;
   }
   const Workbench bench;
   const std::string again = (bench.folder / fs::path(file).filename()).string();
-  if (!film_again(file, flags, again, now)) return verdict;
-  judge_states(origin, now, verdict);
+  if (!film_again(file, flags, again, *now)) return verdict;
+  judge_states(origin, *now, verdict);
   verdict.only.clear();
   judge_movie(file, again, verdict);
   return verdict;
@@ -342,7 +407,9 @@ OBSCURA_COMMAND(110, verify) {
               "PNGs, movies and pages (.html) that obscura wrote; and, if they show another program's run, "
               "its table (.csv)")
       .required();
-  command.option("--scene", flags->scene, "Compare with this scene as it is now, not as it was")
+  command
+      .option("--scene", flags->scene,
+              "Compare with this scene as it is now, with the flags and --set of then")
       .type("SCENE");
   command.flag("--states", flags->states, "Only simulate, and draw nothing");
   add_format(command, flags->format);

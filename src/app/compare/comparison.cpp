@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -19,6 +20,8 @@ namespace obscura::app {
 namespace {
 
 constexpr std::size_t kMostRows = 12;  // of the table
+constexpr const char* kByOrder =
+    "  the folders have no name of a file in common: the first was compared with the first, and so on\n";
 
 using Frame = Comparison::Frame;
 
@@ -31,7 +34,9 @@ bool worse(const Frame& a, const Frame& b) {
   return key(a.difference) > key(b.difference);
 }
 
-// frames of two folders belong together by name, where they have names in common
+std::string pair_of(const std::string& a, const std::string& b) { return fmt::format("{} and {}", a, b); }
+
+// frames of two folders belong together by name, where they have names in common, and else by order
 void match(Frames& a, Frames& b, Comparison& found) {
   const std::set<std::string> left(a.names().begin(), a.names().end()),
       right(b.names().begin(), b.names().end());
@@ -39,7 +44,10 @@ void match(Frames& a, Frames& b, Comparison& found) {
   for (const std::string& name : a.names()) (right.contains(name) ? both : only_a).push_back(name);
   for (const std::string& name : b.names())
     if (!left.contains(name)) only_b.push_back(name);
-  if (both.empty()) return;
+  if (both.empty()) {
+    found.by_order = true;
+    return;
+  }
   if (!only_a.empty()) found.plain.push_back(fmt::format("only {} has {}", found.a, some_of(only_a)));
   if (!only_b.empty()) found.plain.push_back(fmt::format("only {} has {}", found.b, some_of(only_b)));
   a.only(both), b.only(both);
@@ -59,8 +67,29 @@ void keep_if_telling(Comparison& found, Frame frame, const media::Image& a, cons
       found.differing[std::size_t(i)].a = found.differing[std::size_t(i)].b = {};
 }
 
+// When frames of two movies are shown, since the first. The first that differs by more than the files round
+// times to is told: the same pixels at another speed are another film.
+class FrameTimes {
+ public:
+  void compare(const Frames& a, const Frames& b, Comparison& found) {
+    if (told_ || a.kind() != Frames::Kind::movie || b.kind() != Frames::Kind::movie) return;
+    const double left = *a.time(), right = *b.time();
+    if (found.compared == 0) first_a_ = left, first_b_ = right;
+    const double at_a = left - first_a_, at_b = right - first_b_;
+    if (std::abs(at_a - at_b) <= a.tick() + b.tick()) return;
+    told_ = true;
+    found.plain.push_back(
+        fmt::format("{} is at {:.4g} s in {} and at {:.4g} s in {}", a.name(), at_a, found.a, at_b, found.b));
+  }
+
+ private:
+  double first_a_ = 0, first_b_ = 0;  // s
+  bool told_ = false;
+};
+
 void compare_frames(Frames& a, Frames& b, Comparison& found) {
   media::Image left, right;
+  FrameTimes times;
   std::optional<Origin> first_a, first_b;
   for (;;) {
     if (interrupted()) return;
@@ -76,9 +105,10 @@ void compare_frames(Frames& a, Frames& b, Comparison& found) {
       break;
     }
     if (found.compared == 0) first_a = a.origin(), first_b = b.origin();
+    times.compare(a, b, found);
     Frame frame;
     frame.number = found.compared++;
-    frame.name = a.name(), frame.time = a.time();
+    frame.name = found.by_order ? pair_of(a.name(), b.name()) : a.name(), frame.time = a.time();
     frame.origin_a = a.origin(), frame.origin_b = b.origin();
     if (left.width != right.width || left.height != right.height) {
       frame.sizes = true, frame.size_a = size(left), frame.size_b = size(right);
@@ -97,8 +127,6 @@ void compare_frames(Frames& a, Frames& b, Comparison& found) {
   const Frame& first = found.differing[std::size_t(found.first)];
   found.cause = cause(first.origin_a, first.origin_b);
 }
-
-const char* frames(std::int64_t n) { return n == 1 ? "frame" : "frames"; }
 
 std::string row(const Frame& frame, const std::string& mark) {
   const media::Difference& d = frame.difference;
@@ -180,19 +208,23 @@ std::string text(const Comparison& comparison) {
   if (c.same_bytes) return fmt::format("{} and {} are the same, byte by byte\n", c.a, c.b);
   if (c.same()) {
     all = c.still ? fmt::format("{} and {} show the same pixels", c.a, c.b)
-                  : fmt::format("{} and {} show the same pixels in all {} {}", c.a, c.b, c.compared,
-                                frames(c.compared));
+                  : fmt::format("{} and {} show the same pixels in all {}", c.a, c.b,
+                                counted(std::size_t(c.compared), "frame"));
     all += c.others.empty() ? "\n" : "; what they say of themselves differs:\n";
     for (const std::string& line : c.others) all += "  " + line + "\n";
+    if (c.by_order) all += kByOrder;
     return all;
   }
   all = fmt::format("{} and {} differ", c.a, c.b);
   if (c.still) {
     all += fmt::format(": {}\n", sentence(c.differing.front()));
+  } else if (c.differing.empty()) {
+    all += fmt::format("; the pixels of {} are the same\n", counted(std::size_t(c.compared), "frame"));
   } else {
-    all += fmt::format(" in {} of {} {}\n", c.differing.size(), c.compared, frames(c.compared));
-    if (!c.differing.empty()) all += table(c);
+    all += fmt::format(" in {} of {}\n", c.differing.size(), counted(std::size_t(c.compared), "frame")) +
+           table(c);
   }
+  if (c.by_order) all += kByOrder;
   for (const std::string& line : c.plain) all += "  " + line + "\n";
   if (c.cause) {
     all += fmt::format("cause: {}\n", c.cause->lines.empty() ? "not known" : c.cause->lines.front());
@@ -207,6 +239,7 @@ std::string json(const Comparison& comparison) {
   top["a"] = c.a, top["b"] = c.b;
   top["same"] = c.same(), top["same_bytes"] = c.same_bytes;
   top["frames"] = c.compared;
+  if (c.by_order) top["by_order"] = true;
   top["differing"] = nlohmann::ordered_json::array();
   for (const Frame& frame : c.differing) {
     nlohmann::ordered_json it;

@@ -16,7 +16,7 @@ struct Comparison {
   /// A frame that differs.
   struct Frame {
     std::int64_t number = 0;  // in the order of the sequence
-    std::string name;         // of its file, or "frame 12"
+    std::string name;         // of its file, or "frame 12"; of two files that are paired by order both
     std::optional<double> time;
     media::Difference difference;
     bool sizes = false;  // the two are of other sizes: `difference` says nothing
@@ -29,6 +29,7 @@ struct Comparison {
   bool still = true;
   bool same_bytes = false;    // of the files
   std::int64_t compared = 0;  // frames
+  bool by_order = false;      // of two folders without a name in common
   std::vector<Frame> differing;
   int first = -1, worst = -1;       // of `differing`
   std::vector<std::string> plain;   // what else is not the same: numbers of frames, files that one alone has

@@ -38,15 +38,17 @@ std::string data(std::string_view text, bool property) {
   return out;
 }
 
-// from the top of the checkout, which is where GitHub looks for a file
+// from the top of the checkout, which is where GitHub looks for a file; it finds none by "./a.toml"
 std::string from_top(const std::string& file) {
   namespace fs = std::filesystem;
   const char* top = std::getenv("GITHUB_WORKSPACE");
-  if (!top || file.empty()) return file;
+  if (file.empty()) return file;
+  if (!top) return fs::path(file).lexically_normal().generic_string();
   std::error_code none;
   const auto whole = [&](const fs::path& path) { return fs::weakly_canonical(fs::absolute(path), none); };
   const fs::path inside = whole(file).lexically_relative(whole(top));
-  return inside.empty() || *inside.begin() == ".." ? file : inside.generic_string();
+  return inside.empty() || *inside.begin() == ".." ? fs::path(file).lexically_normal().generic_string()
+                                                   : inside.generic_string();
 }
 
 constexpr const char* kLevels[] = {"error", "warning", "notice"};

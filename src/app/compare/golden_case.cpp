@@ -1,6 +1,7 @@
 #include "app/compare/golden_case.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -31,17 +32,24 @@ void write(const std::string& path, const Pictured& made) {
   media::write_png(path, made.image, {.tags = made.origin.tags("")});
 }
 
-// leaves the picture of what fails, and the difference, for a person to look at
+// Leaves the picture of what fails, and the difference, for a person to look at. Where they cannot be written
+// the verdict stands all the same.
 void leave_evidence(const std::string& made_of, const Pictured& made, const GoldenOptions& options,
                     GoldenCase& it) {
   const std::string stem = actual_of(made_of, options) + "-" + it.time;
   const std::string actual = stem + ".png";
-  write(actual, made);
-  it.attachments.push_back(actual);
-  if (!it.expected) return;
-  const std::string difference = stem + ".difference.png";
-  media::write_png(difference, media::difference_picture(*it.expected, made.image));
-  it.attachments.push_back(difference);
+  try {
+    write(actual, made);
+    it.attachments.push_back(actual);
+    it.lines.push_back(actual + " is what there is now; --update takes it");
+    if (!it.expected) return;
+    const std::string difference = stem + ".difference.png";
+    media::write_png(difference, media::difference_picture(*it.expected, made.image));
+    it.attachments.push_back(difference);
+  } catch (const media::Error& error) {
+    it.exit = kFiles;
+    it.lines.push_back(error.what());
+  }
 }
 
 bool other_gl(const Origin& a, const Origin& b) {
@@ -135,6 +143,11 @@ void keep_picture(const GoldenCase& it, const Pictured& made) {
   if (!fs::exists(ignore)) write_text(ignore.string(), "*\n");
 }
 
+// " with --set ball.mass=2": a record is of the scene as its file says, and so are the pictures beside it
+std::string with_sets(const Origin& origin) {
+  return origin.sets.empty() ? "" : fmt::format(" with --set {}", fmt::join(origin.sets, " --set "));
+}
+
 // holds a moment against its hashes, and against the picture that they are of where it lies at hand
 void judge_record(const scene::Golden& golden, const GoldenRecord& record, const Pictured& made,
                   const GoldenOptions& options, GoldenCase& it) {
@@ -149,12 +162,17 @@ void judge_record(const scene::Golden& golden, const GoldenRecord& record, const
     // as if it were not there
   }
   if (picture && pixel_hash(picture->image) != reference.pixels) picture.reset();
+  if (const auto of = picture ? origin_in(picture->tags) : std::nullopt; of && !of->sets.empty())
+    picture.reset();
+  const bool text = record.scene == record_of({it.time}, {made}).scene;
+  const std::string sets = with_sets(made.origin);
   if (state && pixels) {
     it.state = "same";
-    if (record.scene != record_of({it.time}, {made}).scene)
-      it.lines.push_back("state and picture are the same; the text of the scene is another one");
+    if (!text) it.lines.push_back("state and picture are the same; the text of the scene is another one");
+    if (!sets.empty()) it.lines.push_back("state and picture are the same" + sets);
     try {
-      if (!picture) keep_picture(it, made);
+      // a picture tells what it is of
+      if (!picture && text && sets.empty()) keep_picture(it, made);
     } catch (const media::Error&) {
       // if the folder is not writable, the next difference is reported without it
     }
@@ -183,9 +201,10 @@ void judge_record(const scene::Golden& golden, const GoldenRecord& record, const
         fmt::format("the state is the same; drawn by another OpenGL, {} and {}", record.gl, now.gl));
   } else {
     it.state = "differs";
-    if (record.scene != now.scene)
-      it.lines.push_back("the scene's text is another one than the reference's");
-    else if (!state)
+    if (!text) it.lines.push_back("the scene's text is another one than the reference's");
+    if (!sets.empty())
+      it.lines.push_back("other scene: that of the reference" + sets);
+    else if (text && !state)
       it.lines.push_back("other state of the same scene");
     if (record.gl != now.gl) it.lines.push_back(fmt::format("other OpenGL: {} and {}", record.gl, now.gl));
   }
@@ -449,7 +468,6 @@ std::vector<GoldenCase> check_golden(const scene::Scene& scene, const GoldenOpti
       if (!golden.hashes) write(it.file, made[i]);
     } else if (!it.good()) {
       leave_evidence(scene.file, made[i], options, it);
-      it.lines.push_back(it.attachments.front() + " is what there is now; --update takes it");
     }
     cases.push_back(std::move(it));
   }

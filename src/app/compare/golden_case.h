@@ -30,7 +30,7 @@ struct GoldenCase {
   std::optional<Cause> cause;
   std::optional<scene::Error> error;  // of "failed": what is wrong with the scene
   double seconds = 0;                 // its share of the time that its scene took
-  int exit = 0;                       // of "failed" and "unreadable": the exit code
+  int exit = 0;  // of "failed", "unreadable", and where its pictures cannot be written: the exit code
 
   bool good() const { return state == "same" || state == "tolerated" || state == "updated"; }
 };

@@ -11,6 +11,7 @@
 
 #include "app/compare/format.h"
 #include "app/compare/github.h"
+#include "app/console/say.h"
 
 namespace obscura::app {
 
@@ -76,7 +77,7 @@ std::string golden_annotations(const std::vector<GoldenCase>& cases) {
 std::string golden_summary(const std::vector<GoldenCase>& cases) {
   const std::size_t bad =
       std::size_t(std::count_if(cases.begin(), cases.end(), [](const auto& it) { return !it.good(); }));
-  const std::string moments = fmt::format("{} {}", cases.size(), cases.size() == 1 ? "moment" : "moments");
+  const std::string moments = counted(cases.size(), "moment");
   if (bad == 0) return fmt::format("### Golden images: {}, all good\n\n", moments);
   std::string all =
       fmt::format("### Golden images: {} of {} not good\n\n| moment | | |\n|---|---|---|\n", bad, moments);

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
@@ -111,37 +113,63 @@ std::vector<StateColumn> common_columns(const Table& a, const Table& b, std::vec
   return columns;
 }
 
-// says which columns only one table has
+// What a table may leave out as a whole: all of a body but where it is, and what is of no one body. A column
+// of another name, or a component of a quantity whose others are there, was asked for.
+bool may_be_left_out(const StateColumn& column, const Table& b) {
+  static constexpr std::string_view kOptional[] = {"angle", "orientation", "velocity", "spin", "force"};
+  if (is_body(column.body) &&
+      std::find(std::begin(kOptional), std::end(kOptional), column.quantity) == std::end(kOptional))
+    return false;
+  return std::none_of(b.columns.begin(), b.columns.end(), [&](const std::string& name) {
+    const StateColumn there = named(name);
+    return !there.component.empty() && there.body == column.body && there.quantity == column.quantity;
+  });
+}
+
+// says which columns only one table has, and what of both is no column
 void report_others(const Table& a, const Table& b, const std::vector<StateColumn>& columns,
                    std::vector<std::string> missing, RunComparison& found) {
   std::vector<std::string> extra;
   for (const std::string& name : b.columns)
     if (name != "time" && name != "step" && !a.column(name)) extra.push_back(name);
   if (columns.empty()) found.plain.push_back("they have no column in common but time");
-  // a missing body makes it another run; a quantity without a column is not compared
-  std::vector<std::string> absent;
+  // a missing body, or what was asked for of it, makes it another run; what may be left out is not compared
+  std::vector<std::string> absent, lacking;
   std::erase_if(missing, [&](const std::string& name) {
     const StateColumn column = named(name);
     const bool body =
         column.quantity == "position" &&
         std::none_of(columns.begin(), columns.end(), [&](const auto& c) { return c.body == column.body; });
     if (body && (absent.empty() || absent.back() != column.body)) absent.push_back(column.body);
-    return body;
+    if (body || may_be_left_out(column, b)) return body;
+    lacking.push_back(name);
+    return true;
   });
   if (!absent.empty()) found.plain.push_back(fmt::format("{} has no {}", b.file, some_of(absent)));
+  if (!lacking.empty()) found.plain.push_back(fmt::format("{} has no column {}", b.file, some_of(lacking)));
   if (!missing.empty())
     found.others.push_back(fmt::format("not compared, because only {} has it: {}", a.file, some_of(missing)));
   if (!extra.empty())
     found.others.push_back(fmt::format("not compared, because only {} has it: {}", b.file, some_of(extra)));
+  std::vector<std::string> unread = a.unread;
+  for (const std::string& name : b.unread)
+    if (std::find(unread.begin(), unread.end(), name) == unread.end()) unread.push_back(name);
+  if (a.column("step") || b.column("step")) unread.push_back("step");
+  if (!unread.empty()) found.others.push_back("never compared: " + some_of(unread));
 }
 
-// b's value of a column in `row`, near a's: angles without whole turns, and of q and -q the nearer one
+// b's value of a column in `row`, near a's: angles without whole turns, and of q and -q the nearer one.
+// `turns` are those that an angle was more than a's.
 double value_near(const std::vector<double>& of_a, const std::vector<double>& row, const StateColumn& column,
-                  const std::vector<StateColumn>& columns) {
+                  const std::vector<StateColumn>& columns, double& turns) {
   const double x = of_a[column.a];
   double y = row[column.b];
-  if (column.quantity == "angle" && std::isfinite(x) && std::isfinite(y))
-    y = x + std::remainder(y - x, 2 * std::numbers::pi);
+  if (column.quantity == "angle" && std::isfinite(x) && std::isfinite(y)) {
+    constexpr double turn = 2 * std::numbers::pi;
+    const double rest = std::remainder(y - x, turn);
+    turns = std::round((y - x - rest) / turn);
+    y = x + rest;
+  }
   if (column.quantity == "orientation") {
     double dot = 0;
     for (const StateColumn& other : columns)
@@ -167,6 +195,7 @@ RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance
 
   std::size_t without = 0;
   double first_without = 0;
+  std::vector<std::string> turned;  // angles that are the same but for whole turns
   for (std::size_t i = 0; i < a.rows.size(); ++i) {
     const double t = a.time(i);
     int line = 0;
@@ -178,8 +207,12 @@ RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance
     ++found.times;
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const StateColumn& column = columns[k];
-      const double x = a.rows[i][column.a], y = value_near(a.rows[i], *row, column, columns);
+      double turns = 0;
+      const double x = a.rows[i][column.a], y = value_near(a.rows[i], *row, column, columns, turns);
       auto& quantity = found.quantities[column.group];
+      if (const std::string name = joined(column.body, column.quantity);
+          turns != 0 && (turned.empty() || turned.back() != name))
+        turned.push_back(name);
       const double off = the_same(x, y)                         ? 0
                          : std::isfinite(x) && std::isfinite(y) ? std::abs(y - x)
                                                                 : std::numeric_limits<double>::infinity();
@@ -197,6 +230,11 @@ RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance
     found.plain.push_back(
         fmt::format("{} has no row at {} of {} times, the first t = {:g} s{}", b.file, without, a.rows.size(),
                     first_without, interpolate ? "" : "; --interpolate takes straight lines between rows"));
+  if (found.turned = !turned.empty(); found.turned) {
+    std::sort(turned.begin(), turned.end());
+    turned.erase(std::unique(turned.begin(), turned.end()), turned.end());
+    found.others.push_back("compared without whole turns, by which they differ: " + some_of(turned));
+  }
   if (found.times == 0 && !columns.empty()) found.plain.push_back("nothing was compared");
   if (b.rows.size() > found.times && !interpolate)
     found.others.push_back(fmt::format("{} has {} more rows", b.file, b.rows.size() - found.times));
@@ -220,8 +258,11 @@ std::string text(const RunComparison& c, const Tolerance& tolerance) {
   } else if (c.same()) {
     double most = 0;
     for (const auto& q : c.quantities) most = std::max(most, q.largest);
-    all = fmt::format("{} and {} agree at {} times in {} quantities, {}\n", c.a, c.b, c.times,
-                      c.quantities.size(), most == 0 ? "exactly" : fmt::format("to {:.3g} at most", most));
+    all = fmt::format("{} and {} agree at {} in {} quantities, {}\n", c.a, c.b, counted(c.times, "time"),
+                      c.quantities.size(),
+                      most > 0   ? fmt::format("to {:.3g} at most", most)
+                      : c.turned ? "exactly but for whole turns"
+                                 : "exactly");
   } else {
     all = fmt::format("{} and {} differ\n", c.a, c.b);
   }

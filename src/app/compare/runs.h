@@ -38,14 +38,16 @@ struct RunComparison {
   std::size_t times = 0;  // compared
   std::vector<Quantity> quantities;
   std::optional<Place> place;
+  bool turned = false;              // angles differ by whole turns, which are let pass
   std::vector<std::string> plain;   // what b has not: that counts as another run
   std::vector<std::string> others;  // what was not compared, and is no difference
 
   bool same() const { return !place && plain.empty(); }
 };
 
-/// Compares run b with run a, the reference, at a's times and in a's columns; with `interpolate` between b's
-/// rows by straight lines. Angles that differ by whole turns are one angle, and so are q and -q.
+/// Compares run b with run a, the reference, at a's times and in a's columns. b must have the positions of
+/// a's bodies, and each component of a quantity of which it has one; with `interpolate` between b's rows by
+/// straight lines. Angles that differ by whole turns are one angle, and so are q and -q.
 RunComparison compare(const Table& a, const Table& b, const Tolerance& tolerance, bool interpolate);
 
 /// The whole as lines for a person, as a JSON object for a program.

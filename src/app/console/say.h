@@ -43,6 +43,11 @@ inline std::vector<std::string> lines(std::string_view text) {
   return all;
 }
 
+/// "1 scene", "2 scenes".
+inline std::string counted(std::size_t n, const char* thing) {
+  return fmt::format("{} {}{}", n, thing, n == 1 ? "" : "s");
+}
+
 /// The first few of some names; of more, how many.
 inline std::string some_of(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 6;

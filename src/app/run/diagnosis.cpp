@@ -50,6 +50,10 @@ std::vector<std::string> look_lines(const Origin& a, const Origin& b) {
   differ("theme", a.theme, b.theme);
   differ("camera", a.camera, b.camera);
   if (a.transparent != b.transparent) lines.push_back("one is without the ground (--transparent)");
+  if (a.frames > 0 && b.frames > 0) {
+    differ("frame rate", a.fps, b.fps);
+    differ("frames of the film", a.shots, b.shots);
+  }
   differ("encoder", a.encoder, b.encoder);
   differ("preset", a.preset, b.preset);
   if (a.crf != b.crf) lines.push_back("other quality (--crf)");
@@ -64,6 +68,21 @@ std::vector<std::string> gl_lines(const Origin& a, const Origin& b) {
     lines.push_back(fmt::format("other OpenGL: {}, {} and {}, {}", a.gl_version, a.gl_renderer, b.gl_version,
                                 b.gl_renderer));
   return lines;
+}
+
+// the first frame of two films that shows another instant: its number, and both instants; none of stills
+struct OtherInstant {
+  std::int64_t frame = 0;
+  double a = 0, b = 0;  // s
+};
+std::optional<OtherInstant> other_instant(const Origin& a, const scene::Scene& scene_a, const Origin& b,
+                                          const scene::Scene& scene_b) {
+  if (a.frames == 0 || b.frames == 0) return {};
+  const Shots left = shots_of(a, scene_a), right = shots_of(b, scene_b);
+  for (std::int64_t i = 0; i < std::min(left.size(), right.size()); ++i)
+    if (const Shot one = left[i], two = right[i]; one.time != two.time)
+      return OtherInstant{i, sim::value(one.time), sim::value(two.time)};
+  return {};
 }
 
 // one scene, two states: which of them this program makes
@@ -95,19 +114,32 @@ void judge_scenes(const Origin& a, const Origin& b, bool drawn_apart, Cause& cau
                                  : "states and pictures are the same: what differs does not show in them";
   const bool known = same_states(a, b) && (a.frames == 0 || (a.states && b.states && a.shots == b.shots));
   // a still may tell of its whole run: by a plot, by what the camera is to hold
-  if (known && !(a.frames == 0 && drawn_apart)) {
+  if (known && a.frames == 0 && !drawn_apart) {
     cause.lines.push_back(same);
     return;
   }
   try {
-    // the rest of a movie's film is looked at too
     const scene::Scene left = scene_of(a), right = scene_of(b);
+    const auto other = other_instant(a, left, b, right);
+    if (known && a.frames > 0 && !other) {
+      cause.lines.push_back(same);
+      return;
+    }
+    // the rest of a movie's film is looked at too
     const Shots shots = shots_of(a, left);
     sim::Rational until = shots[shots.size() - 1].time;
     if (known && until < left.duration) until = left.duration;
-    if (const std::string line = first_difference(a, b); !line.empty()) cause.lines.push_back(line);
+    if (other)
+      cause.lines.push_back(fmt::format("frames show other instants: frame {} t = {:g} s and t = {:g} s",
+                                        other->frame, other->a, other->b));
+    else if (const std::string line = first_difference(a, b); !line.empty())
+      cause.lines.push_back(line);
     cause.states = parting(left, right, until);
-    if (cause.states && known)
+    if (other && cause.states)
+      cause.lines.push_back(cause.states->text());
+    else if (other)
+      cause.lines.push_back("at one instant states are the same");
+    else if (cause.states && known)
       cause.lines.push_back(fmt::format(
           "states are the same at t = {:g} s, but not through the run, of which plots and views tell; {}",
           sim::value(a.shot->time), cause.states->text()));
@@ -134,6 +166,21 @@ std::string other_scene(const Origin& a, const Origin& b) {
     // said of it as a whole
   }
   return scene_line(a, b);
+}
+
+std::vector<std::string> filmed_otherwise(const Origin& a, const Origin& b, bool drawn) {
+  std::vector<std::string> lines;
+  if (drawn && (a.width != b.width || a.height != b.height))
+    lines.push_back(fmt::format("size: {}x{}, and now {}x{}", a.width, a.height, b.width, b.height));
+  if (a.frames == 0) return lines;
+  if (a.fps != b.fps) lines.push_back(fmt::format("frame rate: {}, and now {}", a.fps, b.fps));
+  const scene::Scene left = scene_of(a), right = scene_of(b);
+  const std::int64_t there = shots_of(a, left).size(), now = shots_of(b, right).size();
+  if (there != now) lines.push_back(fmt::format("frames: {}, and now {}", there, now));
+  if (const auto other = other_instant(a, left, b, right))
+    lines.push_back(
+        fmt::format("frame {}: t = {:g} s, and now t = {:g} s", other->frame, other->a, other->b));
+  return lines;
 }
 
 const char* name(Cause::Kind kind) {

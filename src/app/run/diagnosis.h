@@ -21,12 +21,17 @@ struct Cause {
 const char* name(Cause::Kind kind);
 
 /// Looks for the cause: another scene, whose states part or not; another state of one scene; other flags
-/// about its look; another OpenGL; or pixels alone. Simulates both scenes again where their states differ, and
-/// for stills that do, `drawn_apart`, through the whole run.
+/// about its look; another OpenGL; or pixels alone. Simulates both scenes again where their states differ,
+/// and for stills that do, `drawn_apart`, through the whole run.
 Cause cause(const std::optional<Origin>& a, const std::optional<Origin>& b, bool drawn_apart = true);
 
 /// "other scene (a.toml): crate.mass is 1 and 2"; empty where two scenes say the same.
 std::string other_scene(const Origin& a, const Origin& b);
+
+/// What two films of these origins show otherwise because they are filmed otherwise, a line each: the frame
+/// rate, the number of frames, and the first frame of another instant; with `drawn` also the size. Of stills
+/// the size alone. Throws scene::Error and UsageError.
+std::vector<std::string> filmed_otherwise(const Origin& a, const Origin& b, bool drawn);
 
 /// Whether two origins have the same states: the first that they show, and all if both have all.
 bool same_states(const Origin& a, const Origin& b);

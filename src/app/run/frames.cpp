@@ -68,8 +68,12 @@ Frames::Frames(const std::string& path) : impl_(std::make_unique<Impl>()) {
   if (!fs::exists(status)) throw media::Error(path + ": there is no such file or folder");
   if (fs::is_directory(status)) {
     impl_->kind = Kind::folder;
-    for (const auto& entry : fs::directory_iterator(path, error))
-      if (entry.path().extension() == ".png") impl_->names.push_back(entry.path().filename().string());
+    std::error_code none;
+    const auto links = fs::directory_options::follow_directory_symlink;
+    for (fs::recursive_directory_iterator it(path, links, error), end; !error && it != end;
+         it.increment(error))
+      if (it->path().extension() == ".png" && !it->is_directory(none))
+        impl_->names.push_back(it->path().lexically_relative(path).generic_string());
     if (error) throw media::Error(fmt::format("{}: cannot read this folder: {}", path, error.message()));
     if (impl_->names.empty()) throw media::Error(path + ": has no PNG in it");
     std::sort(impl_->names.begin(), impl_->names.end(), before);
@@ -92,6 +96,8 @@ std::string Frames::name() const { return impl_->name; }
 std::optional<double> Frames::time() const { return impl_->time; }
 const std::optional<Origin>& Frames::origin() const { return impl_->origin; }
 
+double Frames::tick() const { return impl_->movie ? impl_->movie->facts().tick : 0; }
+
 bool Frames::next(media::Image& image) {
   Impl& it = *impl_;
   if (it.read > 0) doing("reading frame " + std::to_string(it.read));
@@ -107,7 +113,7 @@ bool Frames::next(media::Image& image) {
       it.kind == Kind::still ? fs::path(it.path) : fs::path(it.path) / it.names[std::size_t(it.read)];
   media::Png png = media::read_png(file.string());
   image = std::move(png.image);
-  it.name = file.filename().string();
+  it.name = it.kind == Kind::still ? file.filename().string() : it.names[std::size_t(it.read)];
   it.origin = origin_in(png.tags);
   it.time.reset();
   if (it.origin) it.time = sim::value(it.origin->shot->time);

@@ -11,7 +11,8 @@
 
 namespace obscura::app {
 
-/// The pictures of a file or folder in their order: one still, the PNGs of a folder, the frames of a movie.
+/// The pictures of a file or folder in their order: one still, the PNGs of a folder and of those in it, the
+/// frames of a movie.
 class Frames {
  public:
   enum class Kind { still, folder, movie };
@@ -22,18 +23,21 @@ class Frames {
   Frames(Frames&&) noexcept;
 
   Kind kind() const;
-  /// For a folder the names of its PNGs, numbers in them by their value; else empty.
+  /// For a folder the names of its PNGs as seen from there ("sub/0001.png"), numbers in them by their value;
+  /// else empty.
   const std::vector<std::string>& names() const;
   /// For a folder: reads only these, in this order.
   void only(std::vector<std::string> names);
 
   /// The next picture. False after the last. Throws media::Error.
   bool next(media::Image& image);
-  /// For the last picture: its file's name, or "frame 12"; its time (s) if known; its origin, or that of the
-  /// whole movie.
+  /// For the last picture: its file's name, of a folder as in names(), or "frame 12"; its time (s) if known;
+  /// its origin, or that of the whole movie.
   std::string name() const;
   std::optional<double> time() const;
   const std::optional<Origin>& origin() const;
+  /// Of a movie, s: to what the times of its frames are rounded; else 0.
+  double tick() const;
 
  private:
   struct Impl;

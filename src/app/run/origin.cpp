@@ -203,7 +203,7 @@ scene::Scene scene_of(const Origin& origin) {
 Shots shots_of(const Origin& origin, const scene::Scene& scene) {
   if (origin.frames == 0) return Shots::again(*origin.shot, scene.film.fps, scene.film.speed);
   Shots shots = Shots::film(scene.duration, scene.film.fps, scene.film.speed);
-  if (!origin.shots.empty()) shots.only(origin.shots);
+  if (!origin.shots.empty()) shots.only(origin.shots, "its frames");
   return shots;
 }
 

@@ -21,11 +21,11 @@ std::vector<std::string_view> split(std::string_view list, char at) {
   }
 }
 
-std::int64_t frame_number(std::string_view text, const std::string& list) {
+std::int64_t frame_number(std::string_view text, const std::string& list, const char* asked) {
   std::int64_t n = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
   if (error != std::errc() || end != text.data() + text.size() || n < 0) {
-    throw UsageError(fmt::format("--frames {}: expected frame numbers from 0, as in 1,3,5..9", list));
+    throw UsageError(fmt::format("{} {}: expected frame numbers from 0, as in 1,3,5..9", asked, list));
   }
   return n;
 }
@@ -109,17 +109,18 @@ void Shots::between(sim::Rational from, sim::Rational to) {
   }
 }
 
-void Shots::only(const std::string& list) {
+void Shots::only(const std::string& list, const char* asked) {
   const std::int64_t first = ranges_.front().first, last = ranges_.back().second;
   std::vector<std::pair<std::int64_t, std::int64_t>> wanted;
   size_ = 0;
   for (const std::string_view part : split(list, ',')) {
     const std::size_t dots = part.find("..");
-    const std::int64_t a = frame_number(part.substr(0, dots), list);
-    const std::int64_t b = dots == std::string_view::npos ? a : frame_number(part.substr(dots + 2), list);
-    if (b < a) throw UsageError(fmt::format("--frames {}: {}..{} runs backwards", list, a, b));
+    const std::int64_t a = frame_number(part.substr(0, dots), list, asked);
+    const std::int64_t b =
+        dots == std::string_view::npos ? a : frame_number(part.substr(dots + 2), list, asked);
+    if (b < a) throw UsageError(fmt::format("{} {}: {}..{} runs backwards", asked, list, a, b));
     if (a < first || b > last) {
-      throw UsageError(fmt::format("--frames {}: the film has frames {} to {}", list, first, last));
+      throw UsageError(fmt::format("{} {}: the film has frames {} to {}", asked, list, first, last));
     }
     wanted.emplace_back(a, b);
     size_ += b - a + 1;
@@ -128,7 +129,7 @@ void Shots::only(const std::string& list) {
   std::sort(wanted.begin(), wanted.end());
   for (std::size_t i = 1; i < wanted.size(); ++i) {
     if (wanted[i].first <= wanted[i - 1].second) {
-      throw UsageError(fmt::format("--frames {}: frame {} is named twice", list, wanted[i].first));
+      throw UsageError(fmt::format("{} {}: frame {} is named twice", asked, list, wanted[i].first));
     }
   }
   ranges_ = wanted;

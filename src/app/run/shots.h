@@ -40,8 +40,8 @@ class Shots {
   /// Only those that show an instant in [from, to), s of the run. Throws UsageError where none is left.
   void between(sim::Rational from, sim::Rational to);
   /// Only the numbers that `list` names: "1,3,5..9". Throws UsageError where it cannot be read or names a
-  /// frame that is not there.
-  void only(const std::string& list);
+  /// frame that is not there; `asked` is what gave the list, for the message.
+  void only(const std::string& list, const char* asked = "--frames");
 
   std::int64_t size() const { return size_; }
   Shot operator[](std::int64_t i) const;

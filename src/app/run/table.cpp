@@ -76,7 +76,10 @@ Table table_in(const std::string& file) {
     if (numeric.empty()) {
       for (const std::string_view name : row) {
         numeric.push_back(name != "hash");
-        if (!numeric.back()) continue;
+        if (!numeric.back()) {
+          table.unread.emplace_back(name);
+          continue;
+        }
         if (table.column(std::string(name)))
           throw media::Error(
               fmt::format("{}: two columns are called '{}'", place(file, at, line, name), name));

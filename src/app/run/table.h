@@ -20,7 +20,8 @@ struct Table {
   std::optional<std::size_t> column(const std::string& name) const;
   double time(std::size_t row) const { return rows[row][time_column]; }
   std::size_t time_column = 0;
-  bool json = false;  // `lines` are the numbers of its states, from 1
+  bool json = false;                // `lines` are the numbers of its states, from 1
+  std::vector<std::string> unread;  // what else it has, in words: "hash", "bodies.at_rest"
 };
 
 /// Reads a run as `obscura states` writes it, as CSV or as JSON; in CSV numbers separated by commas under one

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <initializer_list>
+#include <string_view>
+
 #include <nlohmann/json.hpp>
 
 #include "app/run/table.h"
@@ -22,6 +26,34 @@ void add(const std::string& name, const nlohmann::json& value, Cells& cells) {
   }
   for (std::size_t k = 0; k < value.size() && k < std::size(kAxes); ++k)
     cells.emplace_back(name + "." + kAxes[k], value[k].get<double>());
+}
+
+// the keys of an object that are none of `read`, as "joints.broken", each once
+void add_unread(const std::string& of, const nlohmann::json& object,
+                std::initializer_list<std::string_view> read, std::vector<std::string>& unread) {
+  for (const auto& [key, value] : object.items()) {
+    const std::string name = of.empty() ? key : of + "." + key;
+    if (std::find(read.begin(), read.end(), key) == read.end() &&
+        std::find(unread.begin(), unread.end(), name) == unread.end())
+      unread.push_back(name);
+  }
+}
+
+// what a state has that is no column
+void add_unread_of_state(const nlohmann::json& state, std::vector<std::string>& unread) {
+  add_unread("", state,
+             {"time", "step", "energy", "momentum", "angular_momentum", "contacts", "bodies", "joints"},
+             unread);
+  const auto all_of = [&](const char* list, std::initializer_list<std::string_view> read) {
+    for (const nlohmann::json& each : state.value(list, nlohmann::json::array()))
+      if (each.is_object()) add_unread(list, each, read, unread);
+  };
+  if (constexpr const char* contacts = "contacts but for their number";
+      !state.value("contacts", nlohmann::json::array()).empty() &&
+      std::find(unread.begin(), unread.end(), contacts) == unread.end())
+    unread.push_back(contacts);
+  all_of("bodies", {"name", "position", "orientation", "angle", "velocity", "spin"});
+  all_of("joints", {"name", "force"});
 }
 
 // the columns that CSV has for an instant too
@@ -53,6 +85,7 @@ Table table_of_json(const std::string& file, const std::string& text) {
     for (const nlohmann::json& state : top.at("states")) {
       const int number = int(table.rows.size()) + 1;
       const Cells cells = cells_of(state);
+      add_unread_of_state(state, table.unread);
       if (table.rows.empty()) {
         for (const auto& [name, value] : cells) {
           if (table.column(name)) throw media::Error(fmt::format("{}: there are two of '{}'", file, name));
