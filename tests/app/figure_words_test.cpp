@@ -1,0 +1,59 @@
+// What a figure says: type that fits its place or is told, values as they are promised, and what is left out.
+
+#include <algorithm>
+#include <regex>
+#include <set>
+
+#include <gmock/gmock.h>
+
+#include "media/png.h"
+#include "needs.h"
+#include "page/page.h"
+#include "program.h"
+
+namespace obscura::app {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class FigureWords : public Program {
+ protected:
+  /// The text of an SVG, its marks left out.
+  std::string drawn(const std::string& arguments) {
+    told_ = obscura("figure scene.toml -o words.svg " + arguments).err;
+    std::string svg = contents(path("words.svg"));
+    if (const auto from = svg.find("<style>"), to = svg.find("</style>"); to != std::string::npos)
+      svg.erase(from, to - from);
+    return std::regex_replace(svg, std::regex("<[^>]*>|\n"), "");
+  }
+  std::set<double> sizes(const std::string& arguments) {
+    drawn(arguments);
+    const std::string svg = contents(path("words.svg"));
+    std::set<double> all;
+    static const std::regex size(" font-size=\"([0-9.]+)\"");
+    for (std::sregex_iterator it(svg.begin(), svg.end(), size), end; it != end; ++it)
+      all.insert(std::stod((*it)[1]));
+    return all;
+  }
+  std::string told_;  // beside the picture
+};
+
+TEST_F(FigureWords, ThatTheFontLacksAreBoxesInAPdfToo) {
+  OBSCURA_NEEDS(page::writes(page::Form::pdf) && installed("pdftotext"), "libcairo2-dev, poppler-utils");
+  scene(R"(
+duration = 1
+[room]
+size = [4, 2]
+[figure]
+at = 0
+[[figure.label]]
+at = [2, 1]
+text = '"A日本B"'
+)");
+  ASSERT_EQ(obscura("figure scene.toml -o a.pdf").exit, 0);
+  EXPECT_THAT(shell("pdftotext a.pdf -").out, HasSubstr("A□□B"));
+}
+
+}  // namespace
+}  // namespace obscura::app
