@@ -39,6 +39,36 @@ class FigureWords : public Program {
   std::string told_;  // beside the picture
 };
 
+const char* const kElasticities = R"(
+duration = 1
+[room]
+size = [4, 2]
+[[ball]]
+name = "ball"
+radius = 0.2
+position = [1, 1.5]
+velocity = [1, 0]
+[figure]
+at = 1
+room = false
+[[figure.plot]]
+quantity = ["vy"]
+of = "ball"
+)";
+
+// The last number, 1.0005, stands out by half of itself.
+TEST_F(FigureWords, OfAnAxisStayOnThePage) {
+  OBSCURA_NEEDS(page::writes(page::Form::pdf) && installed("pdftotext"), "libcairo2-dev, poppler-utils");
+  scene(std::string(kElasticities) + "from = 0.999\nto = 1.0005\n");
+  ASSERT_EQ(obscura("figure scene.toml -o a.pdf").exit, 0);
+  const std::string page = shell("pdftotext -bbox a.pdf -").out;
+  static const std::regex word("xMin=\"[-0-9.]+\" yMin=\"[-0-9.]+\" xMax=\"([-0-9.]+)\"");
+  int count = 0;
+  for (std::sregex_iterator it(page.begin(), page.end(), word), end; it != end; ++it, ++count)
+    EXPECT_LE(std::stod((*it)[1]), 84 * 72 / 25.4);
+  EXPECT_GT(count, 4);
+}
+
 TEST_F(FigureWords, ThatTheFontLacksAreBoxesInAPdfToo) {
   OBSCURA_NEEDS(page::writes(page::Form::pdf) && installed("pdftotext"), "libcairo2-dev, poppler-utils");
   scene(R"(
