@@ -39,6 +39,29 @@ class FigureWords : public Program {
   std::string told_;  // beside the picture
 };
 
+TEST_F(FigureWords, SayABodysAngleAsItHasTurned) {
+  for (const auto& [angle, said] :
+       {std::pair("216", "216°"), std::pair("-30", "−30°"), std::pair("400", "400°")}) {
+    scene(std::string(R"(
+duration = 1
+[room]
+size = [4, 2]
+[[box]]
+name = "wheel"
+size = [0.4, 0.4]
+position = [2, 1]
+angle = )") +
+          angle + R"(
+[figure]
+at = 0
+[[figure.angle]]
+of = "wheel"
+label = "{}"
+)");
+    EXPECT_THAT(drawn(""), HasSubstr(said));
+  }
+}
+
 const char* const kElasticities = R"(
 duration = 1
 [room]

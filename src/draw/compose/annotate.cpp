@@ -406,10 +406,12 @@ void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
 void Notes::angle(int index, const Marks::Angle& angle) {
   Vec3 center = Vec3::Zero(), from = Vec3::UnitX(), to = Vec3::UnitX();
   double wide = angle_;
+  std::optional<double> turned;  // of a body of the plane: its angle, with its sign and whole turns
   if (angle.body >= 0) {
     const sim::Snapshot::Body& body = now_.bodies[std::size_t(angle.body)];
     center = body.position;
     to = body.orientation * Vec3::UnitX();
+    if (view_.view()) turned = body.angle;
     const double reach = 22 * point_ / view_.scale_at(center);
     dashes(center, center + reach * from);
     stroke_through({center, center + reach * to}, thin_, colours_.ink, 2);
@@ -425,22 +427,23 @@ void Notes::angle(int index, const Marks::Angle& angle) {
     hang(center, center);
     dashes(center, center + (wide + 7 * point_) / view_.scale_at(center) * from);
   }
-  // an arc of the great circle through both
-  const double whole = std::atan2(from.cross(to).norm(), from.dot(to));
-  Vec3 across = to - from.dot(to) * from;
-  if (!(across.norm() > 1e-12)) return;
+  // an arc of the great circle through both; of a body's angle as far as it has turned, but for whole turns
+  const double whole =
+      turned ? std::fmod(*turned, 2 * std::numbers::pi) : std::atan2(from.cross(to).norm(), from.dot(to));
+  Vec3 across = turned ? Vec3(Vec3::UnitY()) : Vec3(to - from.dot(to) * from);
+  if (!(across.norm() > 1e-12 && std::abs(whole) > 1e-12)) return;
   across.normalize();
   const double radius = wide / view_.scale_at(center);
   const auto on_arc = [&](double a) {
     return Vec3(center + radius * (std::cos(a) * from + std::sin(a) * across));
   };
   std::vector<Vec3> way;
-  const int n = std::max(6, int(whole / 0.06));
+  const int n = std::max(6, int(std::abs(whole) / 0.06));
   for (int i = 0; i <= n; ++i) way.push_back(on_arc(whole * i / n));
   stroke_through(way, thin_, colours_.ink, 3);
   hang(on_arc(whole / 2), on_arc(whole / 2));
 
-  const double degrees = whole * 180 / std::numbers::pi;
+  const double degrees = turned.value_or(whole) * 180 / std::numbers::pi;
   const WordKey key{WordKey::angle, index};
   const Formula f = set(key, angle.label, degrees, "°", angle.body, colours_.ink);
   const Point hub = view_.page(center), rim = view_.page(on_arc(whole / 2)), out = rim - hub;
