@@ -39,6 +39,66 @@ class FigureWords : public Program {
   std::string told_;  // beside the picture
 };
 
+const char* const kTwoPanels = R"(
+duration = 1
+[room]
+size = [4, 3]
+corner = [-2, -1]
+[[ball]]
+name = "ball"
+radius = 0.2
+position = [0.5, 0.5]
+[figure]
+at = [0, 0.4]
+low = [-0.5, -0.5]
+high = [1, 1.5]
+axes = true
+scale_bar = true
+formula = "E = m g h"
+[[figure.point]]
+at = [3.5, 0.5]
+label = "outside"
+[[figure.label]]
+at = [0.2, 9]
+text = '"far above"'
+panel = "b"
+[[figure.point]]
+at = [0.2, 0.2]
+label = "Q"
+)";
+
+TEST_F(FigureWords, OfALongPanelTitleAreSmallerOrTold) {
+  const auto smallest = [&](const std::string& title) {
+    std::string text = kTwoPanels;
+    text.insert(text.find("at = [0, 0.4]"), "titles = '\"" + title + "\"; \"after\"'\n");
+    scene(text);
+    return *sizes("").begin();
+  };
+  const double usual = smallest("before");
+  const double longer = smallest("before and a longer title here");
+  EXPECT_LT(longer, usual);
+  EXPECT_THAT(told_, Not(HasSubstr("title")));
+  smallest("before and a very long title that has no room whatever is done here at all");
+  EXPECT_THAT(told_, HasSubstr("the title of panel (a) is "));
+}
+
+TEST_F(FigureWords, OfAFormulaWiderThanThePageAreTold) {
+  scene(kTwoPanels);
+  drawn("--width 60mm");
+  EXPECT_THAT(told_, Not(HasSubstr("formula")));
+  drawn("--width 60mm --set 'figure.formula=\"E = m g h + m g h + m g h + m g h + m g h + m g h + m g h\"'");
+  EXPECT_THAT(told_, HasSubstr("the formula is "));
+}
+
+// all type is of the em of words, of rulers and the legend, of letters, and of the formula
+TEST_F(FigureWords, AreAsMuchLargerAsTheScaleOfTypeSays) {
+  scene(kTwoPanels);
+  const std::set<double> usual = sizes("--width 160mm"),
+                         large = sizes("--width 160mm --set look.type_scale=1.5");
+  ASSERT_EQ(usual.size(), large.size());
+  for (auto a = usual.begin(), b = large.begin(); a != usual.end(); ++a, ++b) EXPECT_NEAR(*b, 1.5 * *a, 0.02);
+}
+
 TEST_F(FigureWords, SayABodysAngleAsItHasTurned) {
   for (const auto& [angle, said] :
        {std::pair("216", "216°"), std::pair("-30", "−30°"), std::pair("400", "400°")}) {
@@ -78,6 +138,13 @@ room = false
 quantity = ["vy"]
 of = "ball"
 )";
+
+TEST_F(FigureWords, TellWhatALogarithmicPlotLeavesOut) {
+  scene(std::string(kElasticities) + "over = \"ball.elasticity=0,1\"\nscale = \"log\"\n");
+  const std::string words = drawn("");
+  EXPECT_THAT(told_, HasSubstr("leaves out "));
+  EXPECT_THAT(words, Not(HasSubstr("slope")));  // of one point there is none
+}
 
 // The last number, 1.0005, stands out by half of itself.
 TEST_F(FigureWords, OfAnAxisStayOnThePage) {

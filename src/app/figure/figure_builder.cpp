@@ -9,6 +9,7 @@
 
 #include "app/console/exit.h"
 #include "app/console/interrupt.h"
+#include "app/console/say.h"
 #include "app/run/ahead.h"
 #include "app/run/description.h"
 #include "app/run/plots.h"
@@ -39,7 +40,8 @@ constexpr std::array<const char*, 5> kTold{"", "orange", "purple", "sky", "grey"
 constexpr std::int64_t kMostPanels = 100;
 constexpr int kMostExposures = 2000;
 constexpr double kPathError = 0.2;                    // page units
-constexpr double kFormula = 10;                       // pt, em
+constexpr double kFormula = 10, kTitle = 8.5;         // pt, em
+constexpr double kLeastTitle = 0.6;                   // of a panel's title's size, where it is long
 constexpr double kFaintest = 0.18, kStrongest = 0.6;  // of exposures
 
 // the end of the first step in which the figure's body is struck
@@ -92,11 +94,19 @@ bool traced(const draw::Marks& marks, int body) {
                      [&](const auto& path) { return path.at.body == body; });
 }
 
-draw::Text words(const std::string& text, draw::Face face, double size, const draw::Point& at,
-                 draw::Color color, draw::Align align = draw::Align::left) {
-  return {at,
-          align,
-          {{.text = text, .face = face, .size = size * draw::kPoint, .color = color, .tabular = true}}};
+// Of axes that go by powers of ten nothing that is not positive has a place; what is over time begins at 0.
+void tell_left_out(const scene::Scene& scene, const std::vector<draw::Plot>& plots) {
+  for (const draw::Plot& plot : plots) {
+    std::size_t all = 0, left = 0;
+    for (const draw::Series& line : plot.lines)
+      for (std::size_t i = 0; i < line.values.size(); ++i, ++all)
+        left += !(line.values[i] > 0) || (!line.along.empty() && !(line.along[i] > 0));
+    if (plot.log && left > 0)
+      say(stderr,
+          "{}: warning: the plot of {} leaves out {} of its {} values: scale \"log\" has no place for "
+          "what is not positive\n",
+          scene.file, draw::formula_in_letters(plot.title), left, all);
+  }
 }
 
 // how large marks are
@@ -274,11 +284,13 @@ Page FigureBuilder::page() const {
   draw::List all;
   all.apart = apart_;
   double top = 0;
+  const double point = panels_.front().scene.look.type_scale * draw::kPoint;  // page units, of type
   if (!figure.formula.empty()) {
-    const draw::Formula formula = draw::formula(figure.formula, kFormula * draw::kPoint, colours.ink);
-    top += draw::kPoint * 3 + formula.ascent;
+    const draw::Formula formula = draw::formula(figure.formula, kFormula * point, colours.ink);
+    top += point * 3 + formula.ascent;
     draw::add(formula, {draw::kPoint * 2, top}, all);
-    top += formula.descent + draw::kPoint * 5;
+    top += formula.descent + point * 5;
+    tell_wide("the formula", formula.width, width_ * draw::kPoint - 4 * draw::kPoint);
   }
   double row_height = 0;
   for (std::size_t i = 0; figure.room && i < cells.size(); ++i) {
@@ -298,12 +310,22 @@ Page FigureBuilder::page() const {
       list = in_plane(artist, cells[i], scales, height);
     }
     if (cells.size() > 1) {
-      const double baseline = 9 * draw::kPoint;
-      list.add(words(fmt::format("({})", char('a' + i % 26)), draw::Face::bold, 9,
-                     {2 * draw::kPoint, baseline}, colours.ink));
+      const double baseline = 9 * point, room = each * draw::kPoint - 18 * point;
+      list.add(draw::Text{{2 * draw::kPoint, baseline},
+                          draw::Align::left,
+                          {{.text = fmt::format("({})", char('a' + i % 26)),
+                            .face = draw::Face::bold,
+                            .size = 9 * point,
+                            .color = colours.ink,
+                            .tabular = true}}});
       // what the scene says, or what sets it apart
       const std::string& said = cells[i].title.empty() ? cells[i].words : cells[i].title;
-      draw::add(draw::formula(said, 8.5 * draw::kPoint, colours.ink), {18 * draw::kPoint, baseline}, list);
+      draw::Formula title = draw::formula(said, kTitle * point, colours.ink);
+      // a long one is smaller
+      if (title.width > room)
+        title = draw::formula(said, kTitle * point * std::max(kLeastTitle, room / title.width), colours.ink);
+      tell_wide(fmt::format("the title of panel ({})", char('a' + i % 26)), title.width, room);
+      draw::add(title, {18 * point, baseline}, list);
     }
     all.add(list, 1, corner);
     row_height = std::max(row_height, height);
@@ -317,8 +339,9 @@ Page FigureBuilder::page() const {
       const double margin = layout.clipped ? 2 * draw::kPoint : layout.weight * draw::kBand;
       left = layout.window.x + margin, right = width_ * draw::kPoint - margin;
     }
-    top += 10 * draw::kPoint;
-    top = draw::draw_legend(figure, scales, colours, scale, left, right, top, all) + 4 * draw::kPoint;
+    const double type = panels_.front().scene.look.type_scale;
+    top += 10 * point;
+    top = draw::draw_legend(figure, scales, colours, scale, left, right, top, type, all) + 4 * point;
   }
   // plots below each other, as wide as the figure
   const std::vector<draw::Plot> plots = this->plots();
@@ -329,6 +352,7 @@ Page FigureBuilder::page() const {
     rects.push_back({2 * draw::kPoint, top, (width_ - 4) * draw::kPoint, height});
     top += height;
   }
+  tell_left_out(scene(), plots);
   draw::draw_plots(plots, colours, rects, panels_.front().scene.look.type_scale, all);
   draw::set_decimal_mark(all, panels_.front().scene.look.decimal);
   const double unit = 1080 / top;
@@ -338,6 +362,14 @@ Page FigureBuilder::page() const {
   for (Lit& lit : page.lit)
     lit.where = {unit * lit.where.x, unit * lit.where.y, unit * lit.where.width, unit * lit.where.height};
   return page;
+}
+
+// what is wider than its place goes over what is beside it, or the page's edge; both in page units
+void FigureBuilder::tell_wide(const std::string& what, double width, double room) const {
+  if (width <= room * (1 + 1e-9)) return;
+  const auto mm = [](double units) { return units / draw::kPoint * 25.4 / 72; };
+  say(stderr, "{}: warning: {} is {:.0f} mm wide, and its place {:.0f} mm; a larger width has room for it\n",
+      scene().file, what, mm(width), mm(room));
 }
 
 std::string FigureBuilder::text() const {
@@ -402,11 +434,12 @@ draw::Illustrator FigureBuilder::depictor(const Cell& cell, double width) const 
             double(film.width) / film.height};
   }
   const draw::Figure& figure = panel.scene.figure;
-  draw::Sheet sheet{.width = width, .above = panels_.size() > 1 ? kLetter : 0};
+  draw::Sheet sheet{.width = width, .above = panels_.size() > 1 ? look.type_scale * kLetter : 0};
   if (figure.low && figure.high) sheet.region = draw::Extent{*figure.low, *figure.high};
   if (figure.axes) {
-    sheet.below = draw::kRulerBelow, sheet.left = draw::kRulerLeft;
-    sheet.left = draw::ruler_left(draw::lay_out(panel.cast, look, panel.scene.extent, sheet));
+    sheet.below = look.type_scale * draw::kRulerBelow, sheet.left = look.type_scale * draw::kRulerLeft;
+    sheet.left =
+        draw::ruler_left(draw::lay_out(panel.cast, look, panel.scene.extent, sheet), look.type_scale);
   }
   return {panel.cast, look, panel.scene.extent, sheet};
 }
@@ -440,7 +473,8 @@ draw::List FigureBuilder::in_plane(const draw::Illustrator& depictor, const Cell
   depictor.draw_lines(view, paths, true, list);
   draw::annotate(marks, scales, panel.cast, colours, draw::Projection(view), panel.now, list,
                  lettered(panel.scene.look));
-  if (panel.scene.figure.axes) draw::draw_rulers(depictor.layout(), view, colours, list);
+  if (panel.scene.figure.axes)
+    draw::draw_rulers(depictor.layout(), view, colours, panel.scene.look.type_scale, list);
   height = depictor.layout().height;
   return list;
 }
@@ -468,7 +502,8 @@ draw::List FigureBuilder::in_space(const draw::Illustrator& depictor, const Cell
       marks, draw::paths_of(marks, panel.ways, kPathError / at_target, &panel.now), panel.now, film);
   lit.picture = depictor.depict(panel.now, panel.ways, paths, ghosts);
   const double scale = width * draw::kPoint / (1080 * lit.picture.aspect);
-  const draw::Point corner(0, panels_.size() * panel.scene.cameras.size() > 1 ? kLetter * draw::kPoint : 0);
+  const bool has_letter = panels_.size() * panel.scene.cameras.size() > 1;
+  const draw::Point corner(0, has_letter ? panel.scene.look.type_scale * kLetter * draw::kPoint : 0);
   lit.where = {corner.x(), corner.y(), 1080 * lit.picture.aspect * scale, 1080 * scale};
   height = corner.y() + lit.where.height;
   draw::List list;

@@ -79,6 +79,7 @@ class FigureBuilder {
   };
   std::vector<Cell> cells() const;
   draw::Illustrator depictor(const Cell& cell, double width) const;
+  void tell_wide(const std::string& what, double width, double room) const;
   draw::List in_plane(const draw::Illustrator& depictor, const Cell& cell, const draw::Scales& scales,
                       double& height) const;
   draw::List in_space(const draw::Illustrator& depictor, const Cell& cell, const draw::Scales& scales,

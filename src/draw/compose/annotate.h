@@ -155,17 +155,18 @@ void annotate(const Marks& marks, const Scales& scales, const sim::SceneInfo& ca
               const Projection& projection, const sim::Snapshot& now, List& list, const Annotating& how = {});
 
 /// Rulers in metres along the lower and the left edge of a sheet's window, and how much room they take there.
-void draw_rulers(const Layout& layout, const View& view, const Palette& colours, List& list);
-inline constexpr double kRulerBelow = 25, kRulerLeft = 27;  // pt, at the left at least
+void draw_rulers(const Layout& layout, const View& view, const Palette& colours, double type_scale,
+                 List& list);
+inline constexpr double kRulerBelow = 25, kRulerLeft = 27;  // pt at a type scale of 1, at the left at least
 /// The same at the left, pt: more where the numbers of the upright ruler are wide, or its name is in a font.
 /// `layout`: with any room there, for the heights that the ruler spans.
-double ruler_left(const Layout& layout);
+double ruler_left(const Layout& layout, double type_scale);
 
 /// Whether a figure has a legend, and puts it down from `left` to `right` (page units): the room's scale, and
 /// an arrow of each kind. `baseline`: of its first line. Returns that of the last.
 bool has_legend(const Figure& figure);
 double draw_legend(const Figure& figure, const Scales& scales, const Palette& colours, double scale,
-                   double left, double right, double baseline, List& list);
+                   double left, double right, double baseline, double type_scale, List& list);
 
 /// The largest of 1, 2, 5 times a power of ten that is not above x.
 double round_below(double x);
