@@ -67,6 +67,16 @@ at = [0.2, 0.2]
 label = "Q"
 )";
 
+TEST_F(FigureWords, OutsideOfAPanelAreLeftOutAndToldOnce) {
+  scene(kTwoPanels);
+  const std::string words = drawn("");
+  EXPECT_THAT(words, HasSubstr("Q"));
+  EXPECT_THAT(words, Not(HasSubstr("outside")));
+  EXPECT_THAT(told_, HasSubstr("the point 'outside'"));
+  EXPECT_THAT(told_, HasSubstr("the label 'far above' of panel b"));
+  EXPECT_EQ(std::count(told_.begin(), told_.end(), '\n'), 1) << told_;
+}
+
 TEST_F(FigureWords, OfALongPanelTitleAreSmallerOrTold) {
   const auto smallest = [&](const std::string& title) {
     std::string text = kTwoPanels;

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "draw/page/readings.h"
 #include "draw/page/sheet.h"
 #include "draw/picture/theme.h"
+#include "draw/picture/world_line.h"
 
 namespace obscura::draw {
 
@@ -69,7 +71,7 @@ Lettering film_lettering(double weight, double type_scale, int rows = 0);
 
 /// Which words: of which list of marks, of which mark, of which of its arrows.
 struct WordKey {
-  enum Kind { axis, cone, length, angle, vector, point, label, name } kind = label;
+  enum Kind { axis, cone, length, angle, vector, point, label, name, time } kind = label;
   int index = 0, part = 0;
   auto operator<=>(const WordKey&) const = default;
 };
@@ -133,6 +135,12 @@ std::pair<Placing::Candidate, double> place_of_course(const LabelPlan::Course& c
                                                       const std::vector<Placing::Candidate>& places,
                                                       double film);
 
+/// An earlier instant that a figure shows, and the words of its time.
+struct Timed {
+  const sim::Snapshot* then = nullptr;
+  std::string words;
+};
+
 /// How marks are drawn at one instant.
 struct Annotating {
   Lettering lettering{};
@@ -144,6 +152,12 @@ struct Annotating {
   double before = std::numeric_limits<double>::quiet_NaN();  // s of the film: the survey's sample before
   const Look* look = nullptr;                        // has the bodies' own arrows, which words keep off
   std::span<const std::vector<sim::Vec3>> behind{};  // what bodies leave behind them: trails and paths, too
+  // of a picture that stands still: the earlier instants in it, those with times and whose they are, and a
+  // list for the points and labels that lie outside of what it shows
+  std::span<const SpaceGhost> ghosts{};
+  std::span<const Timed> times{};
+  int times_of = -1;
+  std::vector<WordKey>* unseen = nullptr;
 };
 
 /// The words of bodies that have some.
