@@ -24,7 +24,8 @@ constexpr double kOffPage = 1e6;   // the cost of words that leave the page
 // page units: the cost of words on others, of a leader across an arrow or another body, of one through other
 // words, and of two that cross
 constexpr double kOnWords = 200, kLedAcross = 48, kThroughWords = 240, kCrossing = 160;
-constexpr int kRounds = 8;  // in which words that are placed together go to better places
+constexpr int kRounds = 8;               // in which words that are placed together go to better places
+constexpr std::size_t kManyWords = 150;  // of more each is placed once
 
 /// How much of a segment lies within a rectangle.
 double within(const Point& a, const Point& b, const Rect& rect) {
@@ -221,10 +222,11 @@ std::vector<Placing::Candidate> Placing::place(std::vector<Words> all) const {
   std::iota(order.begin(), order.end(), 0);
   Choice best_choice;
   double least = std::numeric_limits<double>::infinity();
-  for (int turn = 0; turn < 2; ++turn, std::reverse(order.begin(), order.end())) {
+  const bool many = all.size() > kManyWords;
+  for (int turn = 0; turn < (many ? 1 : 2); ++turn, std::reverse(order.begin(), order.end())) {
     Choice chosen(all.size());
     bool moved = true;
-    for (int round = 0; round < kRounds && moved; ++round) {
+    for (int round = 0; round < (many ? 1 : kRounds) && moved; ++round) {
       moved = false;
       for (const std::size_t i : order)
         if (const std::size_t k = best(i, chosen); chosen[i] != k) chosen[i] = k, moved = true;
