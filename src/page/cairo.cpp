@@ -122,26 +122,26 @@ class Pdf final : public Pen {
     for (std::size_t i = 0; i < text.spans.size(); ++i) {
       const draw::Span& span = text.spans[i];
       if (span.text.empty() || line.spans[i].glyphs.empty()) continue;
+      const std::string& words = line.spans[i].drawn.empty() ? span.text : line.spans[i].drawn;
       std::vector<cairo_glyph_t> glyphs;
       for (const draw::Glyph& glyph : line.spans[i].glyphs)
         glyphs.push_back({glyph.index, start.x() + scale * glyph.at.x(), start.y() + scale * glyph.at.y()});
 
       // a glyph a character, or all of them together
       std::vector<cairo_text_cluster_t> clusters;
-      if (characters(span.text) == int(glyphs.size())) {
-        for (std::size_t at = 0; at < span.text.size(); at += std::size_t(clusters.back().num_bytes))
-          clusters.push_back({length_of(span.text[at]), 1});
+      if (characters(words) == int(glyphs.size())) {
+        for (std::size_t at = 0; at < words.size(); at += std::size_t(clusters.back().num_bytes))
+          clusters.push_back({length_of(words[at]), 1});
       } else {
-        clusters.push_back({int(span.text.size()), int(glyphs.size())});
+        clusters.push_back({int(words.size()), int(glyphs.size())});
       }
       cairo_font_face_t*& face = faces_[std::size_t(span.face)];
       if (!face) face = open(span.face);
       cairo_set_font_face(cairo_, face);
       cairo_set_font_size(cairo_, scale * span.size);
       ink(span.color);
-      cairo_show_text_glyphs(cairo_, span.text.data(), int(span.text.size()), glyphs.data(),
-                             int(glyphs.size()), clusters.data(), int(clusters.size()),
-                             cairo_text_cluster_flags_t(0));
+      cairo_show_text_glyphs(cairo_, words.data(), int(words.size()), glyphs.data(), int(glyphs.size()),
+                             clusters.data(), int(clusters.size()), cairo_text_cluster_flags_t(0));
     }
   }
 

@@ -286,7 +286,7 @@ std::vector<Key> picture_rows() {
       {.path = "mark.angle.at", .form = place, .absent = "none", .doc = "Where both directions begin.", .example = "[2, 1]"},
       {.path = "mark.angle.from", .form = place, .absent = "none", .doc = "The first direction points here.", .example = "[3, 1]"},
       {.path = "mark.angle.to", .form = place, .absent = "none", .doc = "The second direction points here.", .example = "\"ball\""},
-      {.path = "mark.angle.label", .form = text, .fallback = "\"\\\\theta\"", .doc = "Its label, as mathematics; `{}` is its value in degrees.", .example = "\"{}\""},
+      {.path = "mark.angle.label", .form = text, .fallback = "\"\\\\theta\"", .doc = "Its label, as mathematics; `{}` is its value in degrees, of a body in the plane as `angle` has it: with its sign and whole turns.", .example = "\"{}\""},
       {.path = "mark.angle.shown"},
       {.path = "mark.length", .form = tables, .doc = "A dimension line."},
       {.path = "mark.length.between", .form = ends, .required = true, .doc = "Its two ends.", .example = "[[0, 0], \"ball\"]"},

@@ -49,6 +49,24 @@ TEST_F(Describe, SaysWhatHitsWhatWhenAndHowFast) {
   EXPECT_EQ(run.out.find("hits the floor"), run.out.rfind("hits the floor"));
 }
 
+// a pendulum that is let go level is lowest after K(sqrt(1/2)) sqrt(l / g) = 0.5295 s, with sqrt(2 g l)
+TEST_F(Describe, SaysWhenABodyIsFastestAndNotWhenItNearlyIs) {
+  scene(R"(duration = 2
+[room]
+size = [2, 2]
+walls = "none"
+gravity = [0, -9.81]
+[[particle]]
+name = "bob"
+position = [1.8, 1.2]
+[[joint]]
+type = "rod"
+between = [[1, 1.2], "bob"]
+)");
+  EXPECT_THAT(obscura("describe scene.toml").out,
+              testing::ContainsRegex("fastest at 0\\.5(29|3)[0-9]* s, with 3\\.96 m/s"));
+}
+
 // bodies that an event joins are joined when it happens, at 0.25 s, not where the step of 0.1 s ends
 TEST_F(Describe, TellsWhenBodiesAreJoined) {
   scene(R"toml(duration = 1

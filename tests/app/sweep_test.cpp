@@ -199,6 +199,23 @@ TEST_F(Sweep, OpensNoGl) {
   EXPECT_EQ(run.err.find("libEGL"), std::string::npos);
 }
 
+// the words over a run have another decimal mark, and at "." the same as always
+TEST_F(Sweep, WordsOverAPictureHaveTheScenesDecimalMark) {
+  scene(kCrateAndBall);
+  const auto words = [&](const std::string& mark) {
+    const Outcome drawn = obscura(
+        "sweep scene.toml --set film.size=[320,180] --vary crate.elasticity=0.25,0.5 "
+        "--at 0 -o a.png --set 'look.decimal=\"" +
+        mark + "\"'");
+    EXPECT_EQ(drawn.exit, 0) << drawn.err;
+    const media::Image all = media::read_png(path("a.png")).image;
+    const Mosaic mosaic(2, 320, 180);
+    return std::string(all.row(mosaic.top(0) - mosaic.words), all.row(mosaic.top(0)));
+  };
+  EXPECT_EQ(words("."), words("."));
+  EXPECT_NE(words("."), words(","));
+}
+
 TEST_F(Sweep, APictureAndAMovieHaveAllRunsBesideEachOther) {
   // tiles of equal runs are equal, of others are not; the movie's bytes are the same for all workers
   scene(kCrateAndBall);

@@ -407,17 +407,17 @@ TEST(Placing, WordsKeepOffLinesAndOffEachOther) {
   const Point at(200, 200), size(40, 20);
   // all but straight down is barred
   for (const double y : {150.0, 165.0, 180.0, 190.0}) placing.avoid({0, y}, {400, y}, 10);
-  const auto first = placing.place(size, Placing::around(at, 8, size, 4));
-  EXPECT_GT(first.center.y() - size.y() / 2, 190);
-  const auto second = placing.place(size, Placing::around(at, 8, size, 4));
-  const Point apart = (second.center - first.center).cwiseAbs();
+  const Placing::Words words{size, Placing::around(at, 8, size, 4)};
+  const auto both = placing.place({words, words});
+  for (const Placing::Candidate& each : both) EXPECT_GT(each.center.y() - size.y() / 2, 190);
+  const Point apart = (both[1].center - both[0].center).cwiseAbs();
   EXPECT_TRUE(apart.x() >= size.x() || apart.y() >= size.y());
 }
 
 TEST(Placing, WordsStayOnThePage) {
   Placing placing({0, 0, 400, 400});
   const Point size(60, 20);
-  const auto place = placing.place(size, Placing::around({398, 2}, 8, size, 4));
+  const auto place = placing.place({{size, Placing::around({398, 2}, 8, size, 4)}})[0];
   EXPECT_LE(place.center.x() + size.x() / 2, 400);
   EXPECT_GE(place.center.y() - size.y() / 2, 0);
 }

@@ -48,5 +48,16 @@ TEST(ListOfThings, WordsThatKeepToWholePixelsGoWithTheirPage) {
   EXPECT_EQ(page.texts[0].whole, Point(12, 24));
 }
 
+TEST(ListOfThings, WhatIsClippedAlikeSharesItsClip) {
+  List list, page;
+  for (int k = 0; k < 3; ++k) {
+    list.clip({0, 0, 10, 10});
+    list.add(Disc{{1, 1}, 1});
+    list.add(Text{{3, 4}, Align::left, {{.text = "v", .size = 10}}});
+  }
+  page.add(list, 2, {10, 20});
+  for (const List* each : {&list, &page}) EXPECT_EQ(each->clips.size(), 1u);
+}
+
 }  // namespace
 }  // namespace obscura::draw

@@ -474,7 +474,7 @@ TEST(Rulers, HaveAllTheirNumbersAndTheirNameBelow) {
   const Sheet sheet{.region = Extent{{0, 0, 0}, {6, 3, 0}}, .below = kRulerBelow, .left = kRulerLeft};
   const Illustrator artist(made.cast, made.look, made.extent, sheet);
   List list;
-  draw_rulers(artist.layout(), artist.view(0), artist.colours(), list);
+  draw_rulers(artist.layout(), artist.view(0), artist.colours(), 1, list);
   double numbers = 0, name = 0;
   for (const Text& text : list.texts) {
     std::string said;
@@ -497,10 +497,10 @@ TEST(Rulers, LongNumbersAreWholeAndApart) {
     Made made = room(8, 4.5);
     made.cast.walls.clear();
     Sheet sheet{.region = Extent{low, high}, .below = kRulerBelow, .left = kRulerLeft};
-    sheet.left = ruler_left(lay_out(made.cast, made.look, made.extent, sheet));
+    sheet.left = ruler_left(lay_out(made.cast, made.look, made.extent, sheet), 1);
     const Illustrator artist(made.cast, made.look, made.extent, sheet);
     List list;
-    draw_rulers(artist.layout(), artist.view(0), artist.colours(), list);
+    draw_rulers(artist.layout(), artist.view(0), artist.colours(), 1, list);
     std::vector<std::pair<double, double>> below;  // from where to where those under the picture reach
     std::set<std::string> names;
     for (const Text& text : list.texts) {

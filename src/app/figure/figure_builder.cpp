@@ -4,11 +4,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "app/console/exit.h"
 #include "app/console/interrupt.h"
+#include "app/console/say.h"
 #include "app/run/ahead.h"
 #include "app/run/description.h"
 #include "app/run/plots.h"
@@ -39,8 +42,10 @@ constexpr std::array<const char*, 5> kTold{"", "orange", "purple", "sky", "grey"
 constexpr std::int64_t kMostPanels = 100;
 constexpr int kMostExposures = 2000;
 constexpr double kPathError = 0.2;                    // page units
-constexpr double kFormula = 10;                       // pt, em
+constexpr double kFormula = 10, kTitle = 8.5;         // pt, em
+constexpr double kLeastTitle = 0.6;                   // of a panel's title's size, where it is long
 constexpr double kFaintest = 0.18, kStrongest = 0.6;  // of exposures
+constexpr double kNoFilm = std::numeric_limits<double>::quiet_NaN();
 
 // the end of the first step in which the figure's body is struck
 sim::Rational impact(const scene::Scene& scene) {
@@ -68,22 +73,14 @@ std::string seconds_words(double time) {
   return number + " \"s\"";
 }
 
-// what a panel shows of a figure's marks, but for ghosts; and the times of earlier exposures
-draw::Marks marks_of(const draw::Figure& figure, int panel, const sim::SceneInfo& cast,
-                     const std::vector<sim::Snapshot>& before) {
+// what a panel shows of a figure's marks, but for ghosts
+draw::Marks marks_of(const draw::Figure& figure, int panel) {
   draw::Marks marks = figure;
   const auto leave = [&](auto& all) {
     std::erase_if(all, [&](const auto& mark) { return !mark.shown.in(panel); });
   };
   leave(marks.points), leave(marks.vectors), leave(marks.angles), leave(marks.lengths);
   leave(marks.cones), leave(marks.labels), leave(marks.paths);
-  if (figure.times_of < 0) return marks;
-  const sim::SceneInfo::Body& body = cast.bodies[std::size_t(figure.times_of)];
-  const double reach = body.radius > 0 ? body.radius : body.half.y();
-  for (const sim::Snapshot& then : before) {
-    const sim::Vec3 top = then.bodies[std::size_t(figure.times_of)].position + reach * sim::Vec3::UnitY();
-    marks.points.push_back({{-1, top}, seconds_words(then.time), false});
-  }
   return marks;
 }
 
@@ -92,19 +89,33 @@ bool traced(const draw::Marks& marks, int body) {
                      [&](const auto& path) { return path.at.body == body; });
 }
 
-draw::Text words(const std::string& text, draw::Face face, double size, const draw::Point& at,
-                 draw::Color color, draw::Align align = draw::Align::left) {
-  return {at,
-          align,
-          {{.text = text, .face = face, .size = size * draw::kPoint, .color = color, .tabular = true}}};
+// in one line; the panels are told where not all of several have lost it
+void tell_unseen(const scene::Scene& scene, const std::map<std::string, std::string>& unseen,
+                 std::size_t panels) {
+  std::vector<std::string> all;
+  for (const auto& [what, letters] : unseen) {
+    all.push_back(what);
+    if (letters.size() < panels)
+      all.back() += fmt::format(" of panel{} {}", letters.size() > 1 ? "s" : "", fmt::join(letters, ", "));
+  }
+  if (!all.empty())
+    say(stderr, "{}: warning: outside of what the figure shows, and left out: {}\n", scene.file,
+        telling::together(all));
 }
 
-// how large marks are
-draw::Annotating lettered(const draw::Look& look) {
-  draw::Annotating how;
-  how.lettering.point *= look.type_scale;
-  how.look = &look;
-  return how;
+// Of axes that go by powers of ten nothing that is not positive has a place; what is over time begins at 0.
+void tell_left_out(const scene::Scene& scene, const std::vector<draw::Plot>& plots) {
+  for (const draw::Plot& plot : plots) {
+    std::size_t all = 0, left = 0;
+    for (const draw::Series& line : plot.lines)
+      for (std::size_t i = 0; i < line.values.size(); ++i, ++all)
+        left += !(line.values[i] > 0) || (!line.along.empty() && !(line.along[i] > 0));
+    if (plot.log && left > 0)
+      say(stderr,
+          "{}: warning: the plot of {} leaves out {} of its {} values: scale \"log\" has no place for "
+          "what is not positive\n",
+          scene.file, draw::formula_in_letters(plot.title), left, all);
+  }
 }
 
 }  // namespace
@@ -274,13 +285,16 @@ Page FigureBuilder::page() const {
   draw::List all;
   all.apart = apart_;
   double top = 0;
+  const double point = panels_.front().scene.look.type_scale * draw::kPoint;  // page units, of type
   if (!figure.formula.empty()) {
-    const draw::Formula formula = draw::formula(figure.formula, kFormula * draw::kPoint, colours.ink);
-    top += draw::kPoint * 3 + formula.ascent;
+    const draw::Formula formula = draw::formula(figure.formula, kFormula * point, colours.ink);
+    top += point * 3 + formula.ascent;
     draw::add(formula, {draw::kPoint * 2, top}, all);
-    top += formula.descent + draw::kPoint * 5;
+    top += formula.descent + point * 5;
+    tell_wide("the formula", formula.width, width_ * draw::kPoint - 4 * draw::kPoint);
   }
   double row_height = 0;
+  Unseen unseen;
   for (std::size_t i = 0; figure.room && i < cells.size(); ++i) {
     const int column = int(i) % columns;
     if (column == 0) top += row_height + (i > 0 ? kRows * draw::kPoint : 0), row_height = 0;
@@ -291,24 +305,35 @@ Page FigureBuilder::page() const {
     list.apart = apart_;
     if (space) {
       Lit lit;
-      list = in_space(artist, cells[i], scales, each, height, lit);
+      list = in_space(artist, cells[i], scales, each, height, lit, unseen);
       lit.where.x += corner.x(), lit.where.y += corner.y();
       page.lit.push_back(std::move(lit));
     } else {
-      list = in_plane(artist, cells[i], scales, height);
+      list = in_plane(artist, cells[i], scales, height, unseen);
     }
     if (cells.size() > 1) {
-      const double baseline = 9 * draw::kPoint;
-      list.add(words(fmt::format("({})", char('a' + i % 26)), draw::Face::bold, 9,
-                     {2 * draw::kPoint, baseline}, colours.ink));
+      const double baseline = 9 * point, room = each * draw::kPoint - 18 * point;
+      list.add(draw::Text{{2 * draw::kPoint, baseline},
+                          draw::Align::left,
+                          {{.text = fmt::format("({})", char('a' + i % 26)),
+                            .face = draw::Face::bold,
+                            .size = 9 * point,
+                            .color = colours.ink,
+                            .tabular = true}}});
       // what the scene says, or what sets it apart
       const std::string& said = cells[i].title.empty() ? cells[i].words : cells[i].title;
-      draw::add(draw::formula(said, 8.5 * draw::kPoint, colours.ink), {18 * draw::kPoint, baseline}, list);
+      draw::Formula title = draw::formula(said, kTitle * point, colours.ink);
+      // a long one is smaller
+      if (title.width > room)
+        title = draw::formula(said, kTitle * point * std::max(kLeastTitle, room / title.width), colours.ink);
+      tell_wide(fmt::format("the title of panel ({})", char('a' + i % 26)), title.width, room);
+      draw::add(title, {18 * point, baseline}, list);
     }
     all.add(list, 1, corner);
     row_height = std::max(row_height, height);
   }
   top += row_height;
+  tell_unseen(scene(), unseen, cells.size());
   if (figure.room && draw::has_legend(figure)) {
     // in space a panel reaches to the page's edges, and the scale is that where its camera looks
     double left = 2 * draw::kPoint, right = width_ * draw::kPoint - left;
@@ -317,8 +342,9 @@ Page FigureBuilder::page() const {
       const double margin = layout.clipped ? 2 * draw::kPoint : layout.weight * draw::kBand;
       left = layout.window.x + margin, right = width_ * draw::kPoint - margin;
     }
-    top += 10 * draw::kPoint;
-    top = draw::draw_legend(figure, scales, colours, scale, left, right, top, all) + 4 * draw::kPoint;
+    const double type = panels_.front().scene.look.type_scale;
+    top += 10 * point;
+    top = draw::draw_legend(figure, scales, colours, scale, left, right, top, type, all) + 4 * point;
   }
   // plots below each other, as wide as the figure
   const std::vector<draw::Plot> plots = this->plots();
@@ -329,6 +355,7 @@ Page FigureBuilder::page() const {
     rects.push_back({2 * draw::kPoint, top, (width_ - 4) * draw::kPoint, height});
     top += height;
   }
+  tell_left_out(scene(), plots);
   draw::draw_plots(plots, colours, rects, panels_.front().scene.look.type_scale, all);
   draw::set_decimal_mark(all, panels_.front().scene.look.decimal);
   const double unit = 1080 / top;
@@ -338,6 +365,14 @@ Page FigureBuilder::page() const {
   for (Lit& lit : page.lit)
     lit.where = {unit * lit.where.x, unit * lit.where.y, unit * lit.where.width, unit * lit.where.height};
   return page;
+}
+
+// what is wider than its place goes over what is beside it, or the page's edge; both in page units
+void FigureBuilder::tell_wide(const std::string& what, double width, double room) const {
+  if (width <= room * (1 + 1e-9)) return;
+  const auto mm = [](double units) { return units / draw::kPoint * 25.4 / 72; };
+  say(stderr, "{}: warning: {} is {:.0f} mm wide, and its place {:.0f} mm; a larger width has room for it\n",
+      scene().file, what, mm(width), mm(room));
 }
 
 std::string FigureBuilder::text() const {
@@ -402,58 +437,19 @@ draw::Illustrator FigureBuilder::depictor(const Cell& cell, double width) const 
             double(film.width) / film.height};
   }
   const draw::Figure& figure = panel.scene.figure;
-  draw::Sheet sheet{.width = width, .above = panels_.size() > 1 ? kLetter : 0};
+  draw::Sheet sheet{.width = width, .above = panels_.size() > 1 ? look.type_scale * kLetter : 0};
   if (figure.low && figure.high) sheet.region = draw::Extent{*figure.low, *figure.high};
   if (figure.axes) {
-    sheet.below = draw::kRulerBelow, sheet.left = draw::kRulerLeft;
-    sheet.left = draw::ruler_left(draw::lay_out(panel.cast, look, panel.scene.extent, sheet));
+    sheet.below = look.type_scale * draw::kRulerBelow, sheet.left = look.type_scale * draw::kRulerLeft;
+    sheet.left =
+        draw::ruler_left(draw::lay_out(panel.cast, look, panel.scene.extent, sheet), look.type_scale);
   }
   return {panel.cast, look, panel.scene.extent, sheet};
 }
 
-draw::List FigureBuilder::in_plane(const draw::Illustrator& depictor, const Cell& cell,
-                                   const draw::Scales& scales, double& height) const {
+std::vector<draw::SpaceGhost> FigureBuilder::ghosts_of(const Cell& cell) {
+  static const std::vector<int> all;
   const Panel& panel = *cell.panel;
-  const draw::Palette colours = draw::palette(panel.scene.look.theme);
-
-  // fixed things, earlier exposures from the oldest on, the instant itself, its annotations
-  const draw::Marks marks = marks_of(panel.scene.figure, cell.index, panel.cast, panel.before);
-  draw::Picture picture = depictor.depict(panel.now, panel.ways);
-  draw::List list;
-  list.apart = apart_;
-  list.add(*picture.still, 1, {0, 0});
-  for (std::size_t k = 0; k < panel.before.size(); ++k) {
-    const double age = double(k) / double(panel.before.size());
-    depictor.ghosts(panel.before[k], kFaintest + (kStrongest - kFaintest) * age, list);
-  }
-  const draw::View view = depictor.view(panel.now.time);
-  const double film = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t i = 0; i < panel.ghosts.size(); ++i) {
-    const draw::Marks::Ghost& ghost = panel.scene.figure.ghosts[i];
-    if (panel.ghosts[i] && ghost.shown.in(cell.index) && ghost.shown.has(panel.now.time, film))
-      depictor.ghosts(*panel.ghosts[i], draw::kGhost, list, ghost.bodies);
-  }
-  const auto paths = draw::path_lines(
-      marks, draw::paths_of(marks, panel.ways, kPathError / view.scale, &panel.now), panel.now, film);
-  depictor.draw_lines(view, paths, false, list);
-  list.add(picture.moving, 1, {0, 0});
-  depictor.draw_lines(view, paths, true, list);
-  draw::annotate(marks, scales, panel.cast, colours, draw::Projection(view), panel.now, list,
-                 lettered(panel.scene.look));
-  if (panel.scene.figure.axes) draw::draw_rulers(depictor.layout(), view, colours, list);
-  height = depictor.layout().height;
-  return list;
-}
-
-// a camera's picture, as wide as the panel, under the panel's letter
-draw::List FigureBuilder::in_space(const draw::Illustrator& depictor, const Cell& cell,
-                                   const draw::Scales& scales, double width, double& height, Lit& lit) const {
-  const Panel& panel = *cell.panel;
-  const draw::Palette colours = draw::palette(panel.scene.look.theme);
-  const draw::Marks marks = marks_of(panel.scene.figure, cell.index, panel.cast, panel.before);
-  const double at_target = depictor.scale(panel.now);
-  const double film = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<int> all;
   std::vector<draw::SpaceGhost> ghosts;
   for (std::size_t k = 0; k < panel.before.size(); ++k) {
     const double age = double(k) / double(panel.before.size());
@@ -461,23 +457,98 @@ draw::List FigureBuilder::in_space(const draw::Illustrator& depictor, const Cell
   }
   for (std::size_t i = 0; i < panel.ghosts.size(); ++i) {
     const draw::Marks::Ghost& ghost = panel.scene.figure.ghosts[i];
-    if (panel.ghosts[i] && ghost.shown.in(cell.index) && ghost.shown.has(panel.now.time, film))
+    if (panel.ghosts[i] && ghost.shown.in(cell.index) && ghost.shown.has(panel.now.time, kNoFilm))
       ghosts.push_back({&*panel.ghosts[i], &ghost.bodies, draw::kGhost});
   }
+  return ghosts;
+}
+
+// arrows, lines and words over a panel's picture: what lies outside of it is left out, and told
+void FigureBuilder::annotate(const Cell& cell, const draw::Marks& marks, const draw::Scales& scales,
+                             const std::vector<draw::SpaceGhost>& ghosts,
+                             const std::vector<draw::WorldLine>& paths, const draw::Projection& projection,
+                             Unseen& unseen, draw::List& list) const {
+  const Panel& panel = *cell.panel;
+  const draw::Look& look = panel.scene.look;
+  std::vector<draw::Timed> times;
+  for (const sim::Snapshot& then : panel.before)
+    if (panel.scene.figure.times_of >= 0) times.push_back({&then, seconds_words(then.time)});
+  std::vector<std::vector<sim::Vec3>> behind;
+  for (const draw::WorldLine& path : paths) {
+    std::vector<sim::Vec3>& way = behind.emplace_back();
+    for (const draw::WorldLine::Node& node : path.nodes) way.push_back(node.at);
+  }
+  std::vector<draw::WordKey> outside;
+  draw::Annotating how{.look = &look,
+                       .behind = behind,
+                       .ghosts = ghosts,
+                       .times = times,
+                       .times_of = panel.scene.figure.times_of,
+                       .unseen = &outside};
+  how.lettering.point *= look.type_scale;
+  list.clip(projection.window());
+  draw::annotate(marks, scales, panel.cast, draw::palette(look.theme), projection, panel.now, list, how);
+  list.unclip();
+  for (const draw::WordKey& key : outside) {
+    const auto i = std::size_t(key.index);
+    const bool point = key.kind == draw::WordKey::point;
+    const std::string words = draw::formula_in_letters(point ? marks.points[i].label : marks.labels[i].text);
+    unseen[fmt::format("the {}{}", point ? "point" : "label", words.empty() ? "" : " '" + words + "'")] +=
+        char('a' + cell.index % 26);
+  }
+}
+
+draw::List FigureBuilder::in_plane(const draw::Illustrator& depictor, const Cell& cell,
+                                   const draw::Scales& scales, double& height, Unseen& unseen) const {
+  const Panel& panel = *cell.panel;
+
+  // fixed things, earlier exposures from the oldest on, the instant itself, its annotations
+  const draw::Marks marks = marks_of(panel.scene.figure, cell.index);
+  draw::Picture picture = depictor.depict(panel.now, panel.ways);
+  draw::List list;
+  list.apart = apart_;
+  list.add(*picture.still, 1, {0, 0});
+  const std::vector<draw::SpaceGhost> ghosts = ghosts_of(cell);
+  for (const draw::SpaceGhost& ghost : ghosts)
+    depictor.ghosts(*ghost.then, ghost.strength, list, *ghost.bodies);
+  const draw::View view = depictor.view(panel.now.time);
   const auto paths = draw::path_lines(
-      marks, draw::paths_of(marks, panel.ways, kPathError / at_target, &panel.now), panel.now, film);
+      marks, draw::paths_of(marks, panel.ways, kPathError / view.scale, &panel.now), panel.now, kNoFilm);
+  list.clip(view.window);
+  depictor.draw_lines(view, paths, false, list);
+  list.add(picture.moving, 1, {0, 0});
+  list.clip(view.window);
+  depictor.draw_lines(view, paths, true, list);
+  annotate(cell, marks, scales, ghosts, paths, draw::Projection(view), unseen, list);
+  if (panel.scene.figure.axes)
+    draw::draw_rulers(depictor.layout(), view, draw::palette(panel.scene.look.theme),
+                      panel.scene.look.type_scale, list);
+  height = depictor.layout().height;
+  return list;
+}
+
+// a camera's picture, as wide as the panel, under the panel's letter
+draw::List FigureBuilder::in_space(const draw::Illustrator& depictor, const Cell& cell,
+                                   const draw::Scales& scales, double width, double& height, Lit& lit,
+                                   Unseen& unseen) const {
+  const Panel& panel = *cell.panel;
+  const draw::Marks marks = marks_of(panel.scene.figure, cell.index);
+  const double at_target = depictor.scale(panel.now);
+  const std::vector<draw::SpaceGhost> ghosts = ghosts_of(cell);
+  const auto paths = draw::path_lines(
+      marks, draw::paths_of(marks, panel.ways, kPathError / at_target, &panel.now), panel.now, kNoFilm);
   lit.picture = depictor.depict(panel.now, panel.ways, paths, ghosts);
   const double scale = width * draw::kPoint / (1080 * lit.picture.aspect);
-  const draw::Point corner(0, panels_.size() * panel.scene.cameras.size() > 1 ? kLetter * draw::kPoint : 0);
+  const bool has_letter = panels_.size() * panel.scene.cameras.size() > 1;
+  const draw::Point corner(0, has_letter ? panel.scene.look.type_scale * kLetter * draw::kPoint : 0);
   lit.where = {corner.x(), corner.y(), 1080 * lit.picture.aspect * scale, 1080 * scale};
   height = corner.y() + lit.where.height;
   draw::List list;
   list.apart = apart_;
   list.add(lit.picture.moving, scale, corner);
   lit.picture.moving = {};
-  draw::annotate(marks, scales, panel.cast, colours,
-                 draw::Projection(depictor.lens(panel.now), scale, corner), panel.now, list,
-                 lettered(panel.scene.look));
+  annotate(cell, marks, scales, ghosts, paths, draw::Projection(depictor.lens(panel.now), scale, corner),
+           unseen, list);
   return list;
 }
 

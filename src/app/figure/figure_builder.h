@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "draw/picture/list.h"
 #include "draw/picture/look.h"
 #include "draw/picture/prose.h"
+#include "draw/picture/world_line.h"
 #include "scene/scene.h"
 #include "sim/model/snapshot.h"
 
@@ -79,10 +81,17 @@ class FigureBuilder {
   };
   std::vector<Cell> cells() const;
   draw::Illustrator depictor(const Cell& cell, double width) const;
+  void tell_wide(const std::string& what, double width, double room) const;
+  static std::vector<draw::SpaceGhost> ghosts_of(const Cell& cell);
+  /// What lies outside of what panels show, and these panels' letters.
+  using Unseen = std::map<std::string, std::string>;
   draw::List in_plane(const draw::Illustrator& depictor, const Cell& cell, const draw::Scales& scales,
-                      double& height) const;
+                      double& height, Unseen& unseen) const;
   draw::List in_space(const draw::Illustrator& depictor, const Cell& cell, const draw::Scales& scales,
-                      double width, double& height, Lit& lit) const;
+                      double width, double& height, Lit& lit, Unseen& unseen) const;
+  void annotate(const Cell& cell, const draw::Marks& marks, const draw::Scales& scales,
+                const std::vector<draw::SpaceGhost>& ghosts, const std::vector<draw::WorldLine>& paths,
+                const draw::Projection& projection, Unseen& unseen, draw::List& list) const;
 
   /// One of the runs that differ in a value, and what it is called in a plot.
   struct Variant {

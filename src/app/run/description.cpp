@@ -68,6 +68,7 @@ class Account {
  private:
   struct Extremes {
     double fastest = 0, when_fastest = 0, highest = -1e300, when_highest = 0;
+    bool faster = false;  // since it became the fastest
   };
   using Pair = std::tuple<int, int, int>;
   using Told = std::vector<std::pair<double, std::string>>;  // s, sentences
@@ -202,8 +203,10 @@ void Account::read(const sim::Snapshot& now) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const sim::Snapshot::Body& it = now.bodies[i];
     Extremes& its = bodies_[i];
-    if (it.velocity.norm() > 1.001 * its.fastest)
-      its.fastest = it.velocity.norm(), its.when_fastest = now.time;
+    // up to the top of the first hump that stands out
+    const double speed = it.velocity.norm();
+    its.faster = speed > (its.faster ? 1 : 1.001) * its.fastest;
+    if (its.faster) its.fastest = speed, its.when_fastest = now.time;
     if (it.position.y() > its.highest) its.highest = it.position.y(), its.when_highest = now.time;
     // the solver finds rest only after a while, and a body at rest moves where the observer moves
     const bool still = it.velocity.norm() < kStillSpeed * cast_.scale && it.spin.norm() < kStillSpin;

@@ -42,15 +42,17 @@ std::vector<double> ends(const scene::Scene& scene, const draw::Figure::Plot& wa
   return found;
 }
 
-// the exponent p of y = c x^p that fits best
-double slope(const std::vector<double>& x, const std::vector<double>& y) {
+// the exponent p of y = c x^p that fits best; none of less than two places
+std::optional<double> slope(const std::vector<double>& x, const std::vector<double>& y) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!(x[i] > 0 && y[i] > 0)) continue;
     const double a = std::log(x[i]), b = std::log(y[i]);
     n += 1, sx += a, sy += b, sxx += a * a, sxy += a * b;
   }
-  return n < 2 ? 0 : (n * sxy - sx * sy) / (n * sxx - sx * sx);
+  const double spread = n * sxx - sx * sx;
+  if (n < 2 || !(spread > 0)) return std::nullopt;
+  return (n * sxy - sx * sy) / spread;
 }
 
 // a point for each value of a key: the end of its run, or how far that is from another's
@@ -83,9 +85,10 @@ void plot_over(const scene::Scene& scene, const draw::Figure::Plot& wanted, draw
   if (!wanted.reference.empty()) plot.negligible = 0;
   if (!wanted.log) return;
   for (draw::Series& line : plot.lines) {
-    const double exponent = slope(line.along, line.values);
-    const bool falls = exponent <= -0.005;  // as it is rounded
-    line.note = fmt::format("\", slope {}{:.2f}\"", falls ? "\u2212" : "", std::abs(exponent));
+    const std::optional<double> exponent = slope(line.along, line.values);
+    if (!exponent) continue;
+    const bool falls = *exponent <= -0.005;  // as it is rounded
+    line.note = fmt::format("\", slope {}{:.2f}\"", falls ? "\u2212" : "", std::abs(*exponent));
   }
 }
 

@@ -50,7 +50,8 @@ class Wall {
     for (int i = 0; i < int(tiles.size()); ++i) {
       draw::Text line;
       line.at = {unit * mosaic.left(i), unit * (mosaic.top(i) - 0.3 * mosaic.words)};
-      line.spans.push_back({.text = tiles[std::size_t(i)].words,
+      const Tile& tile = tiles[std::size_t(i)];
+      line.spans.push_back({.text = draw::with_decimal_mark(tile.words, tile.scene.look.decimal),
                             .size = 0.68 * unit * mosaic.words,
                             .color = colours.ink,
                             .tabular = true});

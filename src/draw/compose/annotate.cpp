@@ -24,17 +24,18 @@ constexpr double kAxes = 0.36;          // of the picture's shorter side: axes i
 constexpr double kAslant = 0.05;        // sine of an angle: nearer to each other two arrows are in line
 constexpr double kApart = 1.1;          // widths of an arrow: how far one on another's line moves aside
 constexpr double kHeads = 3;            // the same: so near to each other heads meet
-constexpr double kHaloInPrint = 1.6;    // points: from the middle of an arrow to the edge of its halo
 constexpr double kTail = 1.7;           // widths of an arrow: radius of the dot where it begins
 constexpr double kFull = 0.28;          // of an arrow's growth: from here on its value is as strong as others
 constexpr double kNamedFrom = 0.4, kNamedFull = 0.66;  // the same of a name alone, up to the head's length
 constexpr double kOutOfBall = 0.6;  // of a ball's radius: how far beyond it words of an arrow within it end
 
-constexpr double kOnArrow = 16, kOnArrowInPrint = 4;   // of each unit of an arrow under words
 constexpr double kBeside = 2.3, kBesideInPrint = 2.1;  // gaps: from an arrow to its words
 constexpr double kOffTip = 0.6;                        // of each unit from an axis's tip to its name
-constexpr double kLate = 0.5;  // of each unit by which words are not where their arrow is
-constexpr double kRing = 26;   // points: how far around a body words of short arrows stand at most
+constexpr double kLate = 0.5;        // of each unit by which words are not where their arrow is
+constexpr double kOnHead = 6;        // of each unit of a measure's end under words
+constexpr double kOffMeasure = 0.1;  // points: more than rounding
+constexpr double kAlongMeasure = 6;  // points: the cost of words along a measure, as beside an arrow
+constexpr double kRing = 26;         // points: how far around a body words of short arrows stand at most
 
 using sim::Vec3;
 
@@ -97,14 +98,11 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   } else {
     arrows_.push_back(arrows[0]), inks_.push_back(ink);
   }
-  const Point end = film() ? arrows[0].tip : tip;
-  placing_.avoid(tail, end, film() ? kOnArrow : kOnArrowInPrint, true);
-  // in print its halo, too: words that touch it look cut
-  if (const Point way = end - tail; !film() && way.norm() > 0)
-    for (const double side : {1.0, -1.0}) {
-      const Point off = side * kHaloInPrint * point_ * Point(-way.y(), way.x()) / way.norm();
-      placing_.avoid(tail + off, end + off, 2);
-    }
+  // in print words stand beside what is seen of it
+  const auto part = film() ? std::optional(std::pair(tail, arrows[0].tip)) : seen(tail, arrows[0].tip);
+  if (!part) return false;
+  const auto [start, end] = *part;
+  if (film() || key.kind == WordKey::axis) avoid_arrow(start, end);
   // words come and go with the arrow: a value is as strong as others while it is there, however small it is;
   // a name alone says nothing of an arrow that is hardly seen, but for one that is leaving the picture
   const auto [from_grow, full_grow] =
@@ -112,7 +110,7 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
   if (film()) fade(label, (arrows[0].grow - from_grow) / (full_grow - from_grow));
   // those of one that ends within its ball stand where it would leave it; which place they have is chosen for
   // the others
-  const auto [from, to] = eased(key, tail, end, around.center);
+  const auto [from, to] = eased(key, start, end, around.center);
   const double length = (to - from).norm(), reach = (1 + kOutOfBall) * around.ball;
   const bool within = film() && !how_.survey && length < reach;
   const Point beyond = within ? Point(from + reach / length * (to - from)) : to;
@@ -137,9 +135,8 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
                                  size(label), point_))
         places.push_back(still);
   }
-  const std::size_t words = words_.size();
-  word(key, label, std::move(places), (tail + end) / 2, std::pair(tail, end), around.center);
-  if (key.kind != WordKey::axis && words_.size() > words) words_.back().shown = int(arrows_.size()) - 1;
+  Word* its = word(key, label, std::move(places), (start + end) / 2, std::pair(start, end), around.center);
+  if (its && key.kind != WordKey::axis) its->shown = int(arrows_.size()) - 1;
   return true;
 }
 
@@ -160,7 +157,7 @@ std::optional<double> Notes::past(std::optional<int> body, const Point& tail, co
   if (!film() || !body) return std::nullopt;
   const Point u = (tip - tail).normalized();
   double far = 0;
-  for (const std::vector<Point>& outline : forms(*body, 12))
+  for (const std::vector<Point>& outline : forms(*body, 12, now_))
     for (const Point& p : outline) far = std::max(far, (p - tail).dot(u));
   return far;
 }
@@ -220,6 +217,7 @@ void Notes::set_apart() {
     if (word.shown < 0) continue;
     const Point& by = moved[std::size_t(word.shown)];
     word.anchor += by, word.arrow->first += by, word.arrow->second += by;
+    for (Placing::Candidate& each : word.places) each.center += by;
   }
 }
 
@@ -406,10 +404,12 @@ void Notes::vector(int index, const Marks::Vector& vector, Scales scales) {
 void Notes::angle(int index, const Marks::Angle& angle) {
   Vec3 center = Vec3::Zero(), from = Vec3::UnitX(), to = Vec3::UnitX();
   double wide = angle_;
+  std::optional<double> turned;  // of a body of the plane: its angle, with its sign and whole turns
   if (angle.body >= 0) {
     const sim::Snapshot::Body& body = now_.bodies[std::size_t(angle.body)];
     center = body.position;
     to = body.orientation * Vec3::UnitX();
+    if (view_.view()) turned = body.angle;
     const double reach = 22 * point_ / view_.scale_at(center);
     dashes(center, center + reach * from);
     stroke_through({center, center + reach * to}, thin_, colours_.ink, 2);
@@ -425,22 +425,23 @@ void Notes::angle(int index, const Marks::Angle& angle) {
     hang(center, center);
     dashes(center, center + (wide + 7 * point_) / view_.scale_at(center) * from);
   }
-  // an arc of the great circle through both
-  const double whole = std::atan2(from.cross(to).norm(), from.dot(to));
-  Vec3 across = to - from.dot(to) * from;
-  if (!(across.norm() > 1e-12)) return;
+  // an arc of the great circle through both; of a body's angle as far as it has turned, but for whole turns
+  const double whole =
+      turned ? std::fmod(*turned, 2 * std::numbers::pi) : std::atan2(from.cross(to).norm(), from.dot(to));
+  Vec3 across = turned ? Vec3(Vec3::UnitY()) : Vec3(to - from.dot(to) * from);
+  if (!(across.norm() > 1e-12 && std::abs(whole) > 1e-12)) return;
   across.normalize();
   const double radius = wide / view_.scale_at(center);
   const auto on_arc = [&](double a) {
     return Vec3(center + radius * (std::cos(a) * from + std::sin(a) * across));
   };
   std::vector<Vec3> way;
-  const int n = std::max(6, int(whole / 0.06));
+  const int n = std::max(6, int(std::abs(whole) / 0.06));
   for (int i = 0; i <= n; ++i) way.push_back(on_arc(whole * i / n));
   stroke_through(way, thin_, colours_.ink, 3);
   hang(on_arc(whole / 2), on_arc(whole / 2));
 
-  const double degrees = whole * 180 / std::numbers::pi;
+  const double degrees = turned.value_or(whole) * 180 / std::numbers::pi;
   const WordKey key{WordKey::angle, index};
   const Formula f = set(key, angle.label, degrees, "°", angle.body, colours_.ink);
   const Point hub = view_.page(center), rim = view_.page(on_arc(whole / 2)), out = rim - hub;
@@ -489,25 +490,39 @@ void Notes::length(int index, const Marks::Length& length) {
   }
   stroke({from, to}, thin_, colours_.ink, 2);
   const double head = std::min(4.5 * point_, 0.4 * (to - from).norm()), half = 0.3 * head;
-  for (const auto& [tip, way] : {std::pair(from, u), std::pair(to, Point(-u))})
+  for (const auto& [tip, way] : {std::pair(from, u), std::pair(to, Point(-u))}) {
+    if (!film()) placing_.avoid(tip - half * v, tip + head * way + half * v, kOnHead);
     list_.add({tip, tip + head * way + half * v, tip + 0.75 * head * way, tip + head * way - half * v},
               colours_.ink);
+  }
   const double metres = (place(length.to, now_) - place(length.from, now_)).norm();
   const WordKey key{WordKey::length, index};
   const Formula f = set(key, length.label, metres, "m", -1, colours_.ink);
-  const Point middle = (from + to) / 2;
+  // in print beside what is seen of it
+  const auto shown = film() ? std::optional(std::pair(from, to)) : seen(from, to);
+  if (!shown) return;
+  const auto [start, end] = *shown;
+  const Point middle = (start + end) / 2;
+  const double high = f.ascent + f.descent;
+  // so far from the line that the room around them is free
+  const double gap = film() ? gap_ : std::max(gap_, kMarginInPrint * high + kOffMeasure * point_);
   std::vector<Placing::Candidate> places;
   for (const double s : {1.0, -1.0})
     for (const double part : {0.5, 0.35, 0.65})
-      places.push_back({from + part * (to - from) +
-                            s * (gap_ * v + Point(v.x() * f.width / 2, v.y() * (f.ascent + f.descent) / 2)),
-                        (part == 0.5 ? 0 : 3) * point_ + (s > 0 ? 0 : point_), false});
+      places.push_back(
+          {start + part * (end - start) + s * (gap * v + Point(v.x() * f.width / 2, v.y() * high / 2)),
+           (part == 0.5 ? 0 : 3) * point_ + (s > 0 ? 0 : point_), false});
   // farther off where there is no room beside it
   for (const double far : {12.0, 26.0, 42.0})
     for (const double s : {1.0, -1.0})
-      places.push_back({middle + s * ((gap_ + far * point_) * v +
-                                      Point(v.x() * f.width / 2, v.y() * (f.ascent + f.descent) / 2)),
-                        (8 + far) * point_, true});
+      places.push_back(
+          {middle + s * ((gap + far * point_) * v + Point(v.x() * f.width / 2, v.y() * high / 2)),
+           (8 + far) * point_, true});
+  if (!film())
+    for (Placing::Candidate each : Placing::along(start, end, gap, size(f), point_)) {
+      each.cost += kAlongMeasure * point_;
+      places.push_back(each);
+    }
   word(key, f, places, middle);
 }
 
@@ -539,7 +554,7 @@ Vec3 Projection::sight(const Vec3& place) const { return view_ ? Vec3(Vec3::Unit
 
 void annotate(const Marks& marks, const Scales& scales, const sim::SceneInfo& cast, const Palette& colours,
               const Projection& projection, const sim::Snapshot& now, List& list, const Annotating& how) {
-  Notes notes(cast, colours, projection, now, how, !marks.names.empty(), list);
+  Notes notes(cast, colours, projection, now, how, list);
   const auto each = [&](const auto& all, auto draw) {
     for (std::size_t i = 0; i < all.size(); ++i)
       if (all[i].shown.has(now.time, how.film)) draw(int(i), all[i]);
@@ -552,6 +567,7 @@ void annotate(const Marks& marks, const Scales& scales, const sim::SceneInfo& ca
   each(marks.points, [&](int i, const Marks::Point& point) { notes.point(i, point); });
   each(marks.labels, [&](int i, const Marks::Label& label) { notes.label(i, label); });
   for (std::size_t i = 0; i < marks.names.size(); ++i) notes.name(int(i), marks.names[i], marks);
+  notes.times();
   notes.finish();
 }
 

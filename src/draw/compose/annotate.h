@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "draw/page/readings.h"
 #include "draw/page/sheet.h"
 #include "draw/picture/theme.h"
+#include "draw/picture/world_line.h"
 
 namespace obscura::draw {
 
@@ -69,7 +71,7 @@ Lettering film_lettering(double weight, double type_scale, int rows = 0);
 
 /// Which words: of which list of marks, of which mark, of which of its arrows.
 struct WordKey {
-  enum Kind { axis, cone, length, angle, vector, point, label, name } kind = label;
+  enum Kind { axis, cone, length, angle, vector, point, label, name, time } kind = label;
   int index = 0, part = 0;
   auto operator<=>(const WordKey&) const = default;
 };
@@ -133,6 +135,12 @@ std::pair<Placing::Candidate, double> place_of_course(const LabelPlan::Course& c
                                                       const std::vector<Placing::Candidate>& places,
                                                       double film);
 
+/// An earlier instant that a figure shows, and the words of its time.
+struct Timed {
+  const sim::Snapshot* then = nullptr;
+  std::string words;
+};
+
 /// How marks are drawn at one instant.
 struct Annotating {
   Lettering lettering{};
@@ -144,6 +152,12 @@ struct Annotating {
   double before = std::numeric_limits<double>::quiet_NaN();  // s of the film: the survey's sample before
   const Look* look = nullptr;                        // has the bodies' own arrows, which words keep off
   std::span<const std::vector<sim::Vec3>> behind{};  // what bodies leave behind them: trails and paths, too
+  // of a picture that stands still: the earlier instants in it, those with times and whose they are, and a
+  // list for the points and labels that lie outside of what it shows
+  std::span<const SpaceGhost> ghosts{};
+  std::span<const Timed> times{};
+  int times_of = -1;
+  std::vector<WordKey>* unseen = nullptr;
 };
 
 /// The words of bodies that have some.
@@ -155,17 +169,18 @@ void annotate(const Marks& marks, const Scales& scales, const sim::SceneInfo& ca
               const Projection& projection, const sim::Snapshot& now, List& list, const Annotating& how = {});
 
 /// Rulers in metres along the lower and the left edge of a sheet's window, and how much room they take there.
-void draw_rulers(const Layout& layout, const View& view, const Palette& colours, List& list);
-inline constexpr double kRulerBelow = 25, kRulerLeft = 27;  // pt, at the left at least
+void draw_rulers(const Layout& layout, const View& view, const Palette& colours, double type_scale,
+                 List& list);
+inline constexpr double kRulerBelow = 25, kRulerLeft = 27;  // pt at a type scale of 1, at the left at least
 /// The same at the left, pt: more where the numbers of the upright ruler are wide, or its name is in a font.
 /// `layout`: with any room there, for the heights that the ruler spans.
-double ruler_left(const Layout& layout);
+double ruler_left(const Layout& layout, double type_scale);
 
 /// Whether a figure has a legend, and puts it down from `left` to `right` (page units): the room's scale, and
 /// an arrow of each kind. `baseline`: of its first line. Returns that of the last.
 bool has_legend(const Figure& figure);
 double draw_legend(const Figure& figure, const Scales& scales, const Palette& colours, double scale,
-                   double left, double right, double baseline, List& list);
+                   double left, double right, double baseline, double type_scale, List& list);
 
 /// The largest of 1, 2, 5 times a power of ten that is not above x.
 double round_below(double x);

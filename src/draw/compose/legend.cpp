@@ -15,10 +15,10 @@
 namespace obscura::draw {
 namespace {
 
-constexpr double kSmall = 8.5 * kPoint;  // em
-constexpr double kLongest = 0.34;        // of the picture's shorter side
-constexpr double kLegendLine = 10 * kPoint, kKindsApart = 10 * kPoint;
-constexpr double kLegendArrow = 1.1 * kPoint / kArrowLine;  // weight at which a shaft is 1.1 pt
+constexpr double kSmall = 8.5;                                      // points, em
+constexpr double kLongest = 0.34;                                   // of the picture's shorter side
+constexpr double kLegendLine = 10, kKindsApart = 10, kToWords = 3;  // points
+constexpr double kLegendArrow = 1.1 * kPoint / kArrowLine;          // weight at which a shaft is 1.1 pt
 
 }  // namespace
 
@@ -56,8 +56,9 @@ bool has_legend(const Figure& figure) {
 }
 
 double draw_legend(const Figure& figure, const Scales& scales, const Palette& colours, double scale,
-                   double left, double right, double baseline, List& list) {
-  double middle = baseline - 0.24 * kSmall;
+                   double left, double right, double baseline, double type_scale, List& list) {
+  const double point = type_scale * kPoint, small = kSmall * point;
+  double middle = baseline - 0.24 * small;
   double taken = left;  // of the line, from the left
   // the room's scale at the left
   if (figure.scale_bar) {
@@ -68,9 +69,9 @@ double draw_legend(const Figure& figure, const Scales& scales, const Palette& co
     };
     line({left, middle}, {left + length, middle});
     for (const double x : {left, left + length}) line({x, middle - tick}, {x, middle + tick});
-    const Formula f = formula(as_number(metres) + " \"m\"", kSmall, colours.ink);
-    add(f, {left + length + 3 * kPoint, baseline}, list);
-    taken = left + length + 3 * kPoint + f.width + kKindsApart;
+    const Formula f = formula(as_number(metres) + " \"m\"", small, colours.ink);
+    add(f, {left + length + kToWords * point, baseline}, list);
+    taken = left + length + kToWords * point + f.width + kKindsApart * point;
   }
   // from the right: an arrow of each kind; what finds no room goes on in a line of its own
   double x = right;
@@ -86,21 +87,21 @@ double draw_legend(const Figure& figure, const Scales& scales, const Palette& co
     if (!(kind.scale > 0)) continue;
     const double value = round_below(32 * kPoint / (kind.scale * scale));
     const double length = value * kind.scale * scale;
-    const Formula f = formula(fmt::format("{} \"{}\"", as_number(value), kind.unit), kSmall, colours.ink);
-    if (x - f.width - 3 * kPoint - length < taken && (taken > left || x < right)) {
-      baseline += kLegendLine, middle += kLegendLine;
+    const Formula f = formula(fmt::format("{} \"{}\"", as_number(value), kind.unit), small, colours.ink);
+    if (x - f.width - kToWords * point - length < taken && (taken > left || x < right)) {
+      baseline += kLegendLine * point, middle += kLegendLine * point;
       x = right, taken = left;
     }
     x -= f.width;
     add(f, {x, baseline}, list);
-    x -= 3 * kPoint;
+    x -= kToWords * point;
     std::vector<Arrow> arrows;
     offer({x - length, middle}, {x, middle}, {left, middle - length, right - left, 2 * length}, kLegendArrow,
           arrows);
     Marks::Vector of;
     of.quantity = kind.quantity;
     draw_arrows(arrows, kLegendArrow, colours.ground, color_of(of, colours), list);
-    x -= length + kKindsApart;
+    x -= length + kKindsApart * point;
   }
   return baseline;
 }

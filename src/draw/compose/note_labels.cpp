@@ -18,6 +18,8 @@ constexpr double kBesideArrows = 4;      // points: the cost of a place that tur
 constexpr double kSteady = 0.25;         // of its greatest length: an arrow that is never shorter
 constexpr std::size_t kSidesOfAxes = 4;  // places of words beside two axes
 constexpr double kLeader = 6;            // points: farther off words have a line to what they name
+constexpr double kStraight = 1e-3;       // sine of an angle: a way that turns by less is straight
+constexpr double kInner = 24;            // points: the cost of a time on the other side of its body's way
 
 // of a body one arrow, from its centre
 constexpr Quantity kSingle[] = {Quantity::velocity, Quantity::acceleration, Quantity::momentum,
@@ -31,6 +33,7 @@ using sim::Vec3;
 void Notes::point(int index, const Marks::Point& point) {
   if (!view_.before(place(point.at, now_))) return;
   const Point at = view_.page(place(point.at, now_));
+  if (is_unseen({WordKey::point, index}, at)) return;
   hang(place(point.at, now_), place(point.at, now_));
   const Color ink = inked(point.color.value_or(colours_.ink), colours_);
   if (point.dot) dots_.push_back({at, ink, hang_});
@@ -39,12 +42,16 @@ void Notes::point(int index, const Marks::Point& point) {
   const double clear = dot_radius_ + 1.2 * point_;
   placing_.avoid(at - Point(clear, 0), at + Point(clear, 0), 8);
   if (!film()) placing_.avoid(at - Point(0, clear), at + Point(0, clear), 8);
-  word({WordKey::point, index}, f, Placing::around(at, dot_radius_ + gap_, size(f), point_), at);
+  forms_[WordKey::point].emplace_back(std::vector<Point>{at});
+  if (Word* its =
+          word({WordKey::point, index}, f, Placing::around(at, dot_radius_ + gap_, size(f), point_), at))
+    its->form = forms_[WordKey::point].size() - 1;
 }
 
 void Notes::label(int index, const Marks::Label& label) {
   if (!view_.before(place(label.at, now_))) return;
   const Point at = view_.page(place(label.at, now_));
+  if (is_unseen({WordKey::label, index}, at)) return;
   hang(place(label.at, now_), place(label.at, now_));
   const WordKey key{WordKey::label, index};
   const Measure* measure = draw::measure(label.quantity);
@@ -52,9 +59,9 @@ void Notes::label(int index, const Marks::Label& label) {
                                                    measure->unit, label.body, colours_.ink)
                                              : formula(label.text, type_, colours_.ink);
   std::vector<Placing::Candidate> places{{at, 0, false}};
-  // in a film beside the body, not on it
+  // beside the body, not on it
   double gap = gap_;
-  if (film() && label.at.body >= 0) {
+  if (label.at.body >= 0) {
     gap *= kNameGap;
     const sim::SceneInfo::Body& body = cast_.bodies[std::size_t(label.at.body)];
     const double reach = body.radius > 0 ? body.radius : body.half.norm();
@@ -135,11 +142,8 @@ void Notes::name(int index, const Marks::Name& name, const Marks& marks) {
   // a body that leaves the picture takes it along
   if (film()) fade(f, within / (2 * gap_));
 
-  std::vector<Point> outline;
-  for (const std::vector<Point>& form : forms(name.body, 24))
-    outline.insert(outline.end(), form.begin(), form.end());
+  const std::vector<Point> outline = outline_of(name.body, now_);
   if (outline.empty()) return;
-  outline = convex_hull(outline);
   const Point half = size(f) / 2;
   const auto in_window = [&](int i, double x) {
     return std::clamp(x, low[i] + half[i], std::max(low[i] + half[i], high[i] - half[i]));
@@ -177,8 +181,66 @@ void Notes::name(int index, const Marks::Name& name, const Marks& marks) {
         places.push_back({at + (reach + outer) * n, (kBesideArrows + off) * point_, off > kLeader});
       }
   }
-  word({WordKey::name, index}, f, places, at);
-  if (!words_.empty() && words_.back().key == WordKey{WordKey::name, index}) words_.back().outline = outline;
+  // others may be taken for what it names
+  std::vector<Form>& all = forms_[WordKey::name];
+  for (std::size_t i = all.size(); i < cast_.bodies.size() && !film() && !many; ++i)
+    all.emplace_back(outline_of(int(i), now_));
+  if (Word* its = word({WordKey::name, index}, f, places, at)) {
+    its->outline = outline;
+    if (!all.empty()) its->form = std::size_t(name.body);
+  }
+}
+
+// The side of a way that most of it bends away from, 1: left of it; of a straight one the upper or right
+// side.
+int Notes::outer_side(const std::vector<Point>& way) {
+  int turns = 0;
+  for (std::size_t k = 1; k + 1 < way.size(); ++k) {
+    const Point a = way[k] - way[k - 1], b = way[k + 1] - way[k];
+    const double turn = a.x() * b.y() - a.y() * b.x();
+    if (std::abs(turn) > kStraight * a.norm() * b.norm()) turns += turn > 0 ? 1 : -1;
+  }
+  if (turns != 0) return turns > 0 ? 1 : -1;
+  const Point whole = way.back() - way.front();
+  return whole.x() + 0.2 * whole.y() >= 0 ? 1 : -1;
+}
+
+// The times of earlier instants of a body, each beside it, and all on one side of its way if there is room.
+void Notes::times() {
+  if (how_.times.empty()) return;
+  const auto body = std::size_t(how_.times_of);
+  std::vector<Point> way;
+  std::vector<Form>& all = forms_[WordKey::time];
+  for (const Timed& each : how_.times) {
+    way.push_back(view_.page(each.then->bodies[body].position));
+    all.emplace_back(outline_of(how_.times_of, *each.then));
+  }
+  way.push_back(view_.page(now_.bodies[body].position));
+  all.emplace_back(outline_of(how_.times_of, now_));
+  const int side = outer_side(way);
+  Point along(1, 0);
+  for (std::size_t k = 0; k < how_.times.size(); ++k) {
+    const std::vector<Point>& outline = all[k].outline;
+    if (outline.empty()) continue;
+    const Point &at = way[k], d = way[k + 1] - way[k > 0 ? k - 1 : 0];
+    if (d.norm() > 1e-6) along = d.normalized();
+    const Point out = side * Point(along.y(), -along.x()), across(-out.y(), out.x());
+    const Formula f = formula(how_.times[k].words, type_, colours_.ink);
+    std::vector<Placing::Candidate> places;
+    for (const double off : {0.0, 4.0, 9.0, 15.0, 22.0, 30.0})
+      for (const double turned :
+           {0.0, 20.0, -20.0, 40.0, -40.0, 65.0, -65.0, 115.0, -115.0, 150.0, -150.0, 180.0}) {
+        const double a = turned * std::numbers::pi / 180;
+        const Point n = std::cos(a) * out + std::sin(a) * across;
+        double reach = 0;
+        for (const Point& p : outline) reach = std::max(reach, (p - at).dot(n));
+        const double cost = std::abs(turned) / 8 + (off > 0 ? 4 + off : 0) + (n.dot(out) < 0 ? kInner : 0);
+        places.push_back(
+            {Placing::beyond(at, n, reach + gap_ + off * point_, size(f)), cost * point_, off > kLeader});
+      }
+    if (Word* its = word({WordKey::time, int(k)}, f, std::move(places), at))
+      its->outline = outline, its->form = k;
+  }
 }
 
 }  // namespace obscura::draw

@@ -23,20 +23,20 @@ constexpr double kNormal = 9 * 72 / 25.4;  // a unit normal: 9 mm
 constexpr double kAngle = 13;              // radius of an arc
 constexpr double kOffHatching = 2.5;       // from it to the words of a film
 constexpr double kBracketHalf = 24;        // page units: half the width of what something hangs from
-constexpr double kMargin = 0.2, kMarginInPrint = 0.25;  // around words, of their height
-constexpr double kCovered = 60;                         // the cost of words over a body
-constexpr double kOnFixed = 0.1;                        // as against that: over one that is fixed
-constexpr double kPale = 1.7;       // contrast to the room under which words are read as on the room
-constexpr double kOnOutline = 8;    // of each unit of a body's outline under words of a film
-constexpr double kRailChord = 8;    // the length of a curve's pieces, as words see them
-constexpr double kOnRail = 4;       // of each unit of a curve under words
-constexpr double kOnTrail = 0.8;    // of each unit of a trail or path under words
-constexpr double kFromEdge = 3;     // points: from words to the page's edge at least
-constexpr double kOnPage = 0.1;     // page units: more than rounding
-constexpr double kNear = 6;         // points: from its place without a leader a word is moved by less
-constexpr double kLeaves = 1.5;     // times as fast as what they name words leave the page with it
-constexpr double kLedAcross = 12;   // points: of a leader across an arrow or over another body
-constexpr double kNameCovered = 6;  // as against the cost of other words over something
+constexpr double kMargin = 0.2;            // around words, of their height
+constexpr double kCovered = 60;            // the cost of words over a body
+constexpr double kCoveredInPrint = 6, kLedInPrint = 60;  // the same in print, of words and of leaders
+constexpr double kOnFixed = 0.1;                         // as against that: over one that is fixed
+constexpr double kPale = 1.7;     // contrast to the room under which words are read as on the room
+constexpr double kOnOutline = 8;  // of each unit of a body's outline under words of a film
+constexpr double kGhostCovered = 40, kOnGhost = 4;  // the same of an earlier instant
+constexpr std::size_t kManyGhosts = 200;
+constexpr double kRailChord = 8;                       // the length of a curve's pieces, as words see them
+constexpr double kOnRail = 4;                          // of each unit of a curve under words
+constexpr double kOnTrail = 0.8, kOnTrailInPrint = 3;  // of each unit of a trail or path under words
+constexpr double kFromEdge = 3;                        // points: from words to the page's edge at least
+constexpr double kLeaves = 1.5;    // times as fast as what they name words leave the page with it
+constexpr double kLedAcross = 12;  // points: of a leader across an arrow or over another body
 
 constexpr std::uint8_t kLegible = 128;  // opacity from which on words are read
 constexpr std::uint8_t kPlate = 150;    // how much of what lies under the words of a film is covered
@@ -46,7 +46,7 @@ using sim::Vec3;
 }  // namespace
 
 Notes::Notes(const sim::SceneInfo& cast, const Palette& colours, const Projection& projection,
-             const sim::Snapshot& now, const Annotating& how, bool names, List& list)
+             const sim::Snapshot& now, const Annotating& how, List& list)
     : cast_(cast),
       colours_(colours),
       view_(projection),
@@ -65,7 +65,8 @@ Notes::Notes(const sim::SceneInfo& cast, const Palette& colours, const Projectio
       angle_(kAngle * point_) {
   // of a film the places are known, or nothing but values is asked for
   if (how_.ranges || (how_.plan && !how_.survey)) return;
-  how_.survey || names ? avoid_areas() : avoid_bodies();
+  avoid_areas();
+  avoid_ghosts();
   avoid_own_arrows();
   if (!view_.view()) return;
   for (const HalfPlane& wall : half_planes(cast, *view_.view())) {
@@ -99,13 +100,6 @@ const std::vector<std::vector<Point>>& Notes::outlines() {
                                                                  -std::sin(k * std::numbers::pi / 6)));
   }
   return outlines_;
-}
-
-void Notes::avoid_bodies() {
-  for (const std::vector<Point>& outline : outlines())
-    for (std::size_t k = 0; k < outline.size(); ++k)
-      placing_.avoid(outline[k], outline[(k + 1) % outline.size()], 2);
-  avoid_springs();
 }
 
 void Notes::avoid_springs() {
@@ -182,6 +176,16 @@ Placing::Candidate Notes::planned(const Word& word, double& leader) const {
   return now;
 }
 
+std::vector<Notes::Placed> Notes::planned_places() const {
+  std::vector<Placed> placed;
+  for (const Word& word : words_) {
+    Placed& it = placed.emplace_back();
+    it.at = planned(word, it.leader);
+    it.at.center = on_page(word, it.at.center);
+  }
+  return placed;
+}
+
 // Moved so far that the words do not reach over an edge; those of what leaves the page go with it, of an
 // arrow when it is wholly beyond the edge.
 Point Notes::on_page(const Word& word, const Point& center) const {
@@ -197,27 +201,6 @@ Point Notes::on_page(const Word& word, const Point& center) const {
   return {moved(0, page.x, page.x + page.width), moved(1, page.y, page.y + page.height)};
 }
 
-// The places of a word in print, and those that would leave the page moved onto it. What names something
-// beyond its edge stays there.
-std::vector<Placing::Candidate> Notes::places_on_page(const Word& word) const {
-  std::vector<Placing::Candidate> all = word.places;
-  const Rect page = view_.window();
-  const Point size = Notes::size(word.set);
-  const double margin = kMarginInPrint * size.y() + kOnPage;
-  const Point half = size / 2 + Point(margin, margin), low(page.x, page.y),
-              high = low + Point(page.width, page.height);
-  const auto is_on_page = [&](const Point& p) {
-    return (p.array() >= low.array()).all() && (p.array() <= high.array()).all();
-  };
-  if (!is_on_page(word.anchor) || (high - low - 2 * half).minCoeff() < 0) return all;
-  for (const Placing::Candidate& place : word.places) {
-    const Point center = place.center.cwiseMax(low + half).cwiseMin(high - half);
-    const double far = (center - place.center).norm();
-    if (far > 0) all.push_back({center, place.cost + far, place.leader || far > kNear * point_});
-  }
-  return all;
-}
-
 // Words stand out against what they cover.
 void Notes::plate(const Point& center, const Point& size, std::uint8_t strength) {
   Color color = colours_.room;
@@ -231,9 +214,9 @@ void Notes::plate(const Point& center, const Point& size, std::uint8_t strength)
 
 // The convex forms that a body is made of, round ones with so many corners; none if it is not wholly before
 // the eye.
-std::vector<std::vector<Point>> Notes::forms(int index, int corners) const {
+std::vector<std::vector<Point>> Notes::forms(int index, int corners, const sim::Snapshot& at) const {
   const sim::SceneInfo::Body& body = cast_.bodies[std::size_t(index)];
-  const sim::Snapshot::Body& it = now_.bodies[std::size_t(index)];
+  const sim::Snapshot::Body& it = at.bodies[std::size_t(index)];
   const double step = 2 * std::numbers::pi / corners;
   std::vector<std::vector<Point>> all;
   const auto add = [&](const sim::DrawnForm& form) {
@@ -276,6 +259,13 @@ std::vector<std::vector<Point>> Notes::forms(int index, int corners) const {
   return all;
 }
 
+std::vector<Point> Notes::outline_of(int body, const sim::Snapshot& at) const {
+  std::vector<Point> outline;
+  for (const std::vector<Point>& form : forms(body, 24, at))
+    outline.insert(outline.end(), form.begin(), form.end());
+  return outline.empty() ? outline : convex_hull(outline);
+}
+
 // whether words are read on a body as beside it: what is fixed and pale
 bool Notes::is_ground(int index) const {
   if (!view_.view() || !how_.look || !cast_.bodies[std::size_t(index)].fixed) return false;
@@ -287,11 +277,16 @@ bool Notes::is_ground(int index) const {
 // the outlines of bodies, and what lies within
 void Notes::avoid_areas() {
   for (std::size_t i = 0; i < cast_.bodies.size(); ++i)
-    for (const std::vector<Point>& outline : forms(int(i), 12)) {
+    for (const std::vector<Point>& outline : forms(int(i), 12, now_)) {
       for (std::size_t k = 0; k < outline.size(); ++k)
         placing_.avoid(outline[k], outline[(k + 1) % outline.size()], kOnOutline);
-      if (!is_ground(int(i)))
-        placing_.avoid(outline, (cast_.bodies[i].fixed ? kOnFixed : 1) * kCovered * point_);
+      if (is_ground(int(i))) continue;
+      const double part = (cast_.bodies[i].fixed ? kOnFixed : 1) * point_;
+      // in print words are read on a body, off its outline
+      if (film())
+        placing_.avoid(outline, part * kCovered);
+      else
+        placing_.avoid(outline, part * kCoveredInPrint, part * kLedInPrint);
     }
   avoid_springs();
   avoid_joints();
@@ -329,6 +324,21 @@ void Notes::avoid_joints() {
   avoid_rails();
 }
 
+// earlier instants, as bodies; of very many the outlines are not looked at one by one
+void Notes::avoid_ghosts() {
+  for (const SpaceGhost& ghost : how_.ghosts)
+    for (std::size_t i = 0; i < cast_.bodies.size(); ++i) {
+      const std::vector<int>& only = *ghost.bodies;
+      if (only.empty() ? cast_.bodies[i].fixed : std::find(only.begin(), only.end(), int(i)) == only.end())
+        continue;
+      for (const std::vector<Point>& outline : forms(int(i), 12, *ghost.then)) {
+        placing_.avoid(outline, kGhostCovered * point_);
+        for (std::size_t k = 0; k < outline.size() && how_.ghosts.size() < kManyGhosts; ++k)
+          placing_.avoid(outline[k], outline[(k + 1) % outline.size()], kOnGhost);
+      }
+    }
+}
+
 // the curves on which bodies roll and slide, as chords of some length on the page
 void Notes::avoid_rails() {
   for (const sim::SceneInfo::Rail& rail : cast_.rails) {
@@ -361,7 +371,8 @@ void Notes::avoid_own_arrows() {
     if (look.bodies[i].velocity) arrow(body.position, body.position + look.velocity_scale * body.velocity);
   }
   for (const std::vector<Vec3>& way : how_.behind)
-    for (std::size_t k = 0; k + 1 < way.size(); ++k) line(way[k], way[k + 1], kOnTrail);
+    for (std::size_t k = 0; k + 1 < way.size(); ++k)
+      line(way[k], way[k + 1], film() ? kOnTrail : kOnTrailInPrint);
   const bool any =
       std::any_of(look.bodies.begin(), look.bodies.end(), [](const auto& b) { return b.contact; });
   if (!any) return;
@@ -400,16 +411,9 @@ void Notes::finish() {
     const double pixel = how_.lettering.pixel;
     return pixel > 0 ? Point(std::round(at.x() / pixel) * pixel, std::round(at.y() / pixel) * pixel) : at;
   };
-  // what has one place alone first: others keep clear of it
-  std::vector<Placed> placed(words_.size());
-  for (const bool sole : {true, false})
-    for (std::size_t i = 0; i < words_.size(); ++i) {
-      const Word& word = words_[i];
-      if ((word.places.size() == 1) != sole) continue;
-      Placed& it = placed[i];
-      it.at = how_.plan ? planned(word, it.leader) : placing_.place(size(word.set), places_on_page(word));
-      if (film()) it.at.center = on_page(word, it.at.center);
-    }
+  const std::vector<double> tails = this->tails();
+  if (!film()) set_apart();
+  std::vector<Placed> placed = film() ? planned_places() : still_places();
   if (how_.plan) yield(placed);
   // plates lie over bodies and lines but under arrows, which stay whole; one kind after another is drawn in
   // few batches
@@ -419,8 +423,10 @@ void Notes::finish() {
       list_.hang(words_[i].hang);
       plate(whole(placed[i].at.center), size(set), set.color.a);
     }
-  const std::vector<double> tails = this->tails();
-  set_apart();
+  if (film()) {
+    set_apart();
+    for (std::size_t i = 0; i < words_.size(); ++i) placed[i].at.end = led_to(words_[i], placed[i].at.center);
+  }
   if (film()) draw_arrows(arrows_, inks_, arrow_, colours_.room, list_);
   // in print each has a halo over those before it
   for (std::size_t i = 0; !film() && i < arrows_.size(); ++i)
@@ -445,7 +451,7 @@ void Notes::finish() {
   };
   for (std::size_t i = 0; i < words_.size(); ++i) {
     list_.hang(words_[i].hang);
-    if (placed[i].at.leader && placed[i].strength > 0) lead(words_[i], placed[i].at.center, placed[i].leader);
+    if (placed[i].at.leader && placed[i].strength > 0) lead(words_[i], placed[i]);
     if (!film()) write(words_[i], placed[i].at.center);
   }
   for (std::size_t i = 0; film() && i < words_.size(); ++i)
@@ -506,7 +512,6 @@ void Notes::offer_places() {
         each.clear = cost <= each.cost;
         if (each.leader)
           cost += placing_.leading(led_to(word, each.center), offered.size, each.center, kLedAcross * point_);
-        // a name has room all around its body: it goes out of the way sooner
         each.cost += (word.key.kind == WordKey::name ? kNameCovered : 1) * (cost - each.cost);
       }
     how_.survey->push_back(std::move(offered));
@@ -521,26 +526,19 @@ Point Notes::led_to(const Word& word, const Point& center) {
 }
 
 // a line from the words' edge to just before what they name
-void Notes::lead(const Word& word, const Point& center, double strength) {
-  const Point anchor = led_to(word, center), size = Notes::size(word.set), way = anchor - center;
+void Notes::lead(const Word& word, const Placed& placed) {
+  const Point &center = placed.at.center, &anchor = placed.at.end;
+  const Point size = Notes::size(word.set), way = anchor - center;
   const double out = std::min(size.x() / 2 / std::max(std::abs(way.normalized().x()), 1e-9),
                               size.y() / 2 / std::max(std::abs(way.normalized().y()), 1e-9));
   const Point u = way.normalized();
   const Point from = center + (out + 1.2 * point_) * u;
-  // as far as a body's outline, where it is that of one
-  double inner = word.outline.empty() ? dot_radius_ : 0;
-  for (std::size_t k = 0; k < word.outline.size(); ++k) {
-    const Point a = word.outline[k] - anchor,
-                d = word.outline[(k + 1) % word.outline.size()] - word.outline[k];
-    const double across = u.x() * d.y() - u.y() * d.x();
-    if (std::abs(across) < 1e-12) continue;
-    const double far = (a.x() * d.y() - a.y() * d.x()) / across,
-                 part = (a.x() * u.y() - a.y() * u.x()) / across;
-    if (part >= 0 && part <= 1) inner = std::max(inner, -far);
-  }
+  // as far as a body's outline, where it is that of one; in print up to an arrow, beside which lie others
+  double inner = word.outline.empty() && (film() || !word.arrow) ? dot_radius_ : 0;
+  inner = std::max(inner, reach_of(word.outline, anchor, -u));
   const Point to = anchor - (inner + 1.5 * point_) * u;
   Color line = word.set.color;
-  line.a = std::uint8_t(std::lround(line.a * strength));
+  line.a = std::uint8_t(std::lround(line.a * placed.leader));
   if ((to - from).dot(u) > 2 * point_)
     list_.add({{from, 0.4 * point_, line}, {to, 0.4 * point_, line}}, Cap::butt);
 }

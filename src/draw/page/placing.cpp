@@ -1,13 +1,15 @@
-// The cost of a place: the length of the lines that run through its rectangle, each by its weight, the area
-// it shares with other words, and its distance from the usual place. Of places that are chosen here, those
-// that leave the page are excluded.
+// The cost of a place: the length of the lines that run through its rectangle, each by its weight, and its
+// distance from the usual place; of words that are placed together also the area that they share and what
+// their leaders cross. Of these, places that leave the page are excluded.
 
 #include "draw/page/placing.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace obscura::draw {
 namespace {
@@ -18,28 +20,25 @@ constexpr double kStill = 14;      // units: of words that stand still while the
 constexpr double kFarther = 14;    // units: of those as far from the tail as the arrow is long
 constexpr double kAgainst = 10;    // units: of those against their arrow
 constexpr double kBeginsOn = 0.5;  // page units: so near it begins on an arrow
+constexpr double kOffPage = 1e6;   // the cost of words that leave the page
+// page units: the cost of words on others, of a leader across an arrow or another body, of one through other
+// words, and of two that cross
+constexpr double kOnWords = 200, kLedAcross = 48, kThroughWords = 240, kCrossing = 160;
+constexpr int kRounds = 8;               // in which words that are placed together go to better places
+constexpr std::size_t kManyWords = 150;  // of more each is placed once
 
-/// How much of a segment lies within a rectangle, by clipping it at each side.
-double within(const Point& a, const Point& b, const Rect& r) {
-  if (std::max(a.x(), b.x()) < r.x || std::min(a.x(), b.x()) > r.x + r.width ||
-      std::max(a.y(), b.y()) < r.y || std::min(a.y(), b.y()) > r.y + r.height)
-    return 0;
-  double from = 0, to = 1;
-  const Point d = b - a;
-  const std::array<std::pair<double, double>, 4> sides{{{-d.x(), a.x() - r.x},
-                                                        {d.x(), r.x + r.width - a.x()},
-                                                        {-d.y(), a.y() - r.y},
-                                                        {d.y(), r.y + r.height - a.y()}}};
-  for (const auto& [p, q] : sides) {
-    if (p == 0) {
-      if (q < 0) return 0;
-    } else if (p < 0) {
-      from = std::max(from, q / p);
-    } else {
-      to = std::min(to, q / p);
-    }
-  }
-  return from < to ? (to - from) * d.norm() : 0;
+/// How much of a segment lies within a rectangle.
+double within(const Point& a, const Point& b, const Rect& rect) {
+  const auto part = part_within(a, b, rect);
+  return part ? (part->second - part->first) * (b - a).norm() : 0;
+}
+
+/// Whether two segments cross.
+bool cross(const Point& a, const Point& b, const Point& c, const Point& d) {
+  const auto side = [](const Point& p, const Point& q, const Point& r) {
+    return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
+  };
+  return side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0;
 }
 
 double shared(const Rect& a, const Rect& b) {
@@ -84,15 +83,40 @@ Point clear_line(const Point& n, double gap, const Point& size) {
 
 }  // namespace
 
+// by clipping it at each side
+std::optional<std::pair<double, double>> part_within(const Point& a, const Point& b, const Rect& r) {
+  if (std::max(a.x(), b.x()) < r.x || std::min(a.x(), b.x()) > r.x + r.width ||
+      std::max(a.y(), b.y()) < r.y || std::min(a.y(), b.y()) > r.y + r.height)
+    return std::nullopt;
+  double from = 0, to = 1;
+  const Point d = b - a;
+  const std::array<std::pair<double, double>, 4> sides{{{-d.x(), a.x() - r.x},
+                                                        {d.x(), r.x + r.width - a.x()},
+                                                        {-d.y(), a.y() - r.y},
+                                                        {d.y(), r.y + r.height - a.y()}}};
+  for (const auto& [p, q] : sides) {
+    if (p == 0) {
+      if (q < 0) return std::nullopt;
+    } else if (p < 0) {
+      from = std::max(from, q / p);
+    } else {
+      to = std::min(to, q / p);
+    }
+  }
+  if (!(from < to)) return std::nullopt;
+  return std::pair(from, to);
+}
+
 void Placing::avoid(const Point& a, const Point& b, double weight, bool arrow) {
   lines_.push_back({a, b, weight, arrow});
 }
 
-void Placing::avoid(const std::vector<Point>& area, double cost) {
+void Placing::avoid(const std::vector<Point>& area, double cost, std::optional<double> led) {
   if (area.size() < 3) return;
   Point low = area[0], high = area[0];
   for (const Point& p : area) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  areas_.push_back({area, {low.x(), low.y(), high.x() - low.x(), high.y() - low.y()}, cost});
+  areas_.push_back(
+      {area, {low.x(), low.y(), high.x() - low.x(), high.y() - low.y()}, cost, led.value_or(cost)});
 }
 
 double Placing::lines(const Rect& rect) const {
@@ -111,14 +135,9 @@ double Placing::lines(const Rect& rect) const {
   return sum;
 }
 
-double Placing::cost(const Rect& rect) const {
-  double sum = lines(rect);
-  for (const Rect& other : taken_) {
-    if (const double area = shared(rect, other); area > 0) sum += 200 + area;
-  }
-  const bool outside = rect.x < page_.x || rect.y < page_.y || rect.x + rect.width > page_.x + page_.width ||
-                       rect.y + rect.height > page_.y + page_.height;
-  return outside ? sum + 1e6 : sum;
+bool Placing::on_page(const Rect& rect) const {
+  return rect.x >= page_.x && rect.y >= page_.y && rect.x + rect.width <= page_.x + page_.width &&
+         rect.y + rect.height <= page_.y + page_.height;
 }
 
 Rect Placing::rect_of(const Point& size, const Candidate& c) const {
@@ -152,21 +171,97 @@ double Placing::leading(const Point& anchor, const Point& size, const Point& cen
   const Rect around{low.x(), low.y(), high.x() - low.x(), high.y() - low.y()};
   for (const Area& area : areas_) {
     if (!meet(around, area.around)) continue;
-    if (area.cost < crossing || inside(area.outline, anchor)) continue;
+    if (area.led < crossing || inside(area.outline, anchor)) continue;
     int covered = 0;
     for (int i = 1; i <= kPieces; ++i)
       covered += inside(area.outline, anchor + i * (1 - across) / kPieces * way);
-    if (covered > 0) sum += crossing + area.cost * covered / kPieces;
+    if (covered > 0) sum += crossing + area.led * covered / kPieces;
   }
   return sum;
 }
 
-Placing::Candidate Placing::place(const Point& size, const std::vector<Candidate>& candidates) {
-  const auto all = [&](const Candidate& each) { return each.cost + cost(rect_of(size, each)); };
-  const auto best = std::min_element(candidates.begin(), candidates.end(),
-                                     [&](const Candidate& a, const Candidate& b) { return all(a) < all(b); });
-  taken_.push_back(rect_of(size, *best));
-  return *best;
+// the cost of two places that words have at once
+double Placing::together(const Words& a, const Candidate& at, const Words& b, const Candidate& other) const {
+  const Rect own = rect_of(a.size, at), its = rect_of(b.size, other);
+  double cost = 0;
+  if (const double area = shared(own, its); area > 0) cost += kOnWords + area;
+  if (at.leader && within(at.center, at.end, its) > 0) cost += kThroughWords;
+  if (other.leader && within(other.center, other.end, own) > 0) cost += kThroughWords;
+  if (at.leader && other.leader && cross(at.center, at.end, other.center, other.end)) cost += kCrossing;
+  return cost;
+}
+
+// One after another has the place of least cost beside those that have one; then each goes on to a better
+// place until none has any. Both orders are tried, for what comes first has the choice.
+std::vector<Placing::Candidate> Placing::place(std::vector<Words> all) const {
+  for (Words& words : all) {
+    for (Candidate& each : words.places) {
+      const Rect rect = rect_of(words.size, each);
+      each.cost += lines(rect) + (on_page(rect) ? 0 : kOffPage);
+      if (each.leader) each.cost += leading(each.end, words.size, each.center, kLedAcross);
+    }
+    std::stable_sort(words.places.begin(), words.places.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+  }
+  using Choice = std::vector<std::optional<std::size_t>>;
+  const auto beside_others = [&](std::size_t i, const Candidate& each, const Choice& chosen, double most) {
+    double cost = each.cost;
+    for (std::size_t j = 0; j < all.size() && cost < most; ++j)
+      if (j != i && chosen[j]) cost += together(all[i], each, all[j], all[j].places[*chosen[j]]);
+    return cost;
+  };
+  const auto best = [&](std::size_t i, const Choice& chosen) {
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t found = 0;
+    for (std::size_t k = 0; k < all[i].places.size() && all[i].places[k].cost < least; ++k)
+      if (const double cost = beside_others(i, all[i].places[k], chosen, least); cost < least)
+        least = cost, found = k;
+    return found;
+  };
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), 0);
+  Choice best_choice;
+  double least = std::numeric_limits<double>::infinity();
+  const bool many = all.size() > kManyWords;
+  for (int turn = 0; turn < (many ? 1 : 2); ++turn, std::reverse(order.begin(), order.end())) {
+    Choice chosen(all.size());
+    bool moved = true;
+    for (int round = 0; round < (many ? 1 : kRounds) && moved; ++round) {
+      moved = false;
+      for (const std::size_t i : order)
+        if (const std::size_t k = best(i, chosen); chosen[i] != k) chosen[i] = k, moved = true;
+    }
+    double cost = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Candidate& own = all[i].places[*chosen[i]];
+      cost += own.cost;
+      for (std::size_t j = 0; j < i; ++j) cost += together(all[i], own, all[j], all[j].places[*chosen[j]]);
+    }
+    if (cost < least) least = cost, best_choice = std::move(chosen);
+  }
+  std::vector<Candidate> found;
+  for (std::size_t i = 0; i < all.size(); ++i) found.push_back(all[i].places[*best_choice[i]]);
+  return found;
+}
+
+Point Placing::beyond(const Point& at, const Point& n, double gap, const Point& size) {
+  return at + clear(n, gap, size);
+}
+
+double Placing::off_line(const Point& center, const Point& size, const Point& a, const Point& b) {
+  const Rect rect{center.x() - size.x() / 2, center.y() - size.y() / 2, size.x(), size.y()};
+  if (within(a, b, rect) > 0) return 0;
+  const auto off_rect = [&](const Point& p) {
+    return ((p - center).cwiseAbs() - size / 2).cwiseMax(Point(0, 0)).norm();
+  };
+  double least = std::min(off_rect(a), off_rect(b));
+  const Point way = b - a;
+  for (int corner = 0; corner < 4 && way.squaredNorm() > 0; ++corner) {
+    const Point p = center + Point(corner & 1 ? 0.5 : -0.5, corner & 2 ? 0.5 : -0.5).cwiseProduct(size);
+    const double part = std::clamp((p - a).dot(way) / way.squaredNorm(), 0.0, 1.0);
+    least = std::min(least, (p - a - part * way).norm());
+  }
+  return least;
 }
 
 std::vector<Placing::Candidate> Placing::around(const Point& at, double gap, const Point& size, double unit) {
@@ -196,7 +291,6 @@ std::vector<Placing::Candidate> Placing::along(const Point& tail, const Point& t
   std::vector<Candidate> all;
   double ring = 0;
   for (const double off : {0.0, 3.0, 8.0, 15.0, 24.0}) {
-    if (!fixed && off > 20) break;
     double order = 0;
     for (const double part : {0.85, 0.7, 0.55, 1.0, 0.4, 0.25}) {
       const Point at = tail + part * (tip - tail);
@@ -216,14 +310,12 @@ std::vector<Placing::Candidate> Placing::along(const Point& tail, const Point& t
         all.push_back(
             {out + (gap + off * unit + u.cwiseAbs().dot(size) / 2) * u + clear_line(side * v, gap, size),
              ring + kPast * unit, false});
-    if (fixed && off > 6)
-      all.push_back({tail + clear(-u, gap + off * unit, size), ring + kBehind * unit, true});
+    if (off > 6) all.push_back({tail + clear(-u, gap + off * unit, size), ring + kBehind * unit, true});
     ring += 8 * unit;
   }
   // where many arrows leave one body: beyond its outline
   const double along = u.cwiseAbs().dot(size) / 2;
   for (const double off : {36.0, 52.0, 70.0}) {
-    if (!fixed) break;
     for (const double side : {1.0, -1.0}) {
       for (const double part : {1.0, 0.4})
         all.push_back(

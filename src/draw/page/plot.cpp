@@ -37,6 +37,7 @@ constexpr double kAboveEnd = 3;    // points: how high above the axis the middle
 constexpr double kBesideEnd = 4;   // points: from an end to its name
 constexpr double kLeft = 0.05;  // of the width: a line that ends so far from the right is named where it ends
 constexpr int kMostDecades = 7;  // with a number each
+constexpr double kToName = 5;    // points: from the last number below the axis to what it is over
 
 std::string power(int exponent) {
   return exponent == 0 ? "1" : exponent == 1 ? "10" : fmt::format("10^{{{}}}", exponent);
@@ -151,11 +152,20 @@ Ticks upward(const PlotArea& area) {
                   : numbered(area.ticks);
 }
 
-Ticks across(const PlotArea& area) {
+Ticks across_axis(const PlotArea& area) {
   const double width = area.right - area.left;
   if (!area.log) return along_axis(area.first, area.last, width, area.point);
   const Ticks all = decades(area.first, area.last, 0);
   return decades(area.first, area.last, (widest(all, area.point) + kNumbersApart * area.point) / width);
+}
+
+/// How far the numbers below the axis reach to the right, or the axis does.
+double reach_of(const PlotArea& area, const Ticks& ticks) {
+  double reached = area.right;
+  for (std::size_t i = 0; i < ticks.marks.size(); ++i)
+    reached = std::max(reached, area.at(ticks.marks[i], area.low).x() +
+                                    formula(ticks.numbers[i], kPlotType * area.point, {}).width / 2);
+  return reached;
 }
 
 const std::vector<double>& along(const Plot& plot, const Series& line) {
@@ -314,9 +324,12 @@ PlotArea plot_area(const Plot& plot, const Rect& rect, double point, bool keyed)
   const double numbers = widest(upward(area), point);
   double names = widest_name(plot, area) + 5 * point;
   // what it is over, right of the last number, which stands out by half of itself
-  names = std::max(names, formula(plot.name, kPlotType * point, {}).width + 12 * point);
+  const double over = formula(plot.name, kPlotType * point, {}).width;
+  names = std::max(names, over + 12 * point);
   area.left = rect.x + numbers + kTick * point + 3 * point;
   area.right = rect.x + rect.width - names;
+  const double beyond = reach_of(area, across_axis(area)) + kToName * point + over - rect.x - rect.width;
+  if (beyond > 0) area.right -= beyond;
 
   // the names at the right end; those of lines that leave the range stand where they do
   std::vector<double> ends;
@@ -361,19 +374,18 @@ void draw_axes(const Plot& plot, const PlotArea& area, const Palette& colours, L
     line(p, p - Point(0.6 * tick, 0), 0.6 * axis, colours.ink);
   }
   if (area.low < 0) line(area.at(area.first, 0), area.at(area.last, 0), 0.3 * area.point, colours.hatch);
-  const Ticks along = across(area);
-  double reached = right;
+  const Ticks along = across_axis(area);
   for (std::size_t i = 0; i < along.marks.size(); ++i) {
     const Point p{area.at(along.marks[i], area.low).x(), bottom};
     line(p, p + Point(0, tick), axis, colours.ink);
     write(along.numbers[i], p + Point(0, tick + 7.5 * area.point), 0.5, colours.ink);
-    reached = std::max(reached, p.x() + formula(along.numbers[i], type, colours.ink).width / 2);
   }
   for (const double mark : along.between) {
     const Point p{area.at(mark, area.low).x(), bottom};
     line(p, p + Point(0, 0.6 * tick), 0.6 * axis, colours.ink);
   }
-  write(plot.name, {reached + 5 * area.point, bottom + tick + 7.5 * area.point}, 0, colours.ink);
+  write(plot.name, {reach_of(area, along) + kToName * area.point, bottom + tick + 7.5 * area.point}, 0,
+        colours.ink);
   // from where the widest number begins
   write(plot.title, {left - tick - 1.5 * area.point - widest(up, area.point), area.title}, 0, colours.ink);
   draw_key(plot, area, colours, list);

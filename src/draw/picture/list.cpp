@@ -58,7 +58,8 @@ void List::add(const std::vector<Point>& outline, Color fill) {
 }
 
 void List::clip(const Rect& rect) {
-  clips.push_back(rect);
+  // that of the last is its own again, as where a list is added batch by batch
+  if (clips.empty() || !(clips.back() == rect)) clips.push_back(rect);
   clip_ = int(clips.size()) - 1;
 }
 

@@ -368,12 +368,21 @@ struct Placed {
   int x_offset, y_offset, x_advance;
 };
 
+/// Letters, shaped: their glyphs, and the bytes at which there are some that the font lacks, for which it has
+/// a box if it can.
+struct ShapedLetters {
+  std::vector<Placed> glyphs;
+  std::vector<std::size_t> lacking{};
+};
+constexpr hb_codepoint_t kBox = 0x25A1;
+constexpr const char* kBoxLetter = "\u25A1";
+
 // The letters of a face, shaped. Films say the same words in frame after frame: what a thread has shaped it
 // keeps.
-const std::vector<Placed>& glyphs_of(Face face, const std::string& letters, bool tabular) {
+const ShapedLetters& glyphs_of(Face face, const std::string& letters, bool tabular) {
   constexpr std::size_t kKept = 4096;
   thread_local Buffer buffer;
-  thread_local std::unordered_map<std::string, std::vector<Placed>> kept;
+  thread_local std::unordered_map<std::string, ShapedLetters> kept;
   // named, not guessed: the locale must not choose glyphs
   static const hb_language_t language = hb_language_from_string("en", -1);
 
@@ -389,13 +398,20 @@ const std::vector<Placed>& glyphs_of(Face face, const std::string& letters, bool
   unsigned count = 0;
   const hb_glyph_info_t* infos = hb_buffer_get_glyph_infos(buffer.it, &count);
   const hb_glyph_position_t* places = hb_buffer_get_glyph_positions(buffer.it, &count);
-  std::vector<Placed>& glyphs = kept[key];
+  ShapedLetters& shaped = kept[key];
+  hb_codepoint_t box = 0;
   for (unsigned i = 0; i < count; ++i) {
-    if (infos[i].codepoint == 0 && infos[i].cluster < letters.size())
+    Placed glyph{infos[i].codepoint, places[i].x_offset, places[i].y_offset, places[i].x_advance};
+    if (glyph.index == 0 && infos[i].cluster < letters.size()) {
       without_glyph().add(letters.substr(infos[i].cluster, sign_at(letters, infos[i].cluster).length));
-    glyphs.push_back({infos[i].codepoint, places[i].x_offset, places[i].y_offset, places[i].x_advance});
+      shaped.lacking.push_back(infos[i].cluster);
+      hb_font_t* const its = font(face).get();
+      if (hb_font_get_nominal_glyph(its, kBox, &box))
+        glyph = {box, 0, 0, hb_font_get_glyph_h_advance(its, box)};
+    }
+    shaped.glyphs.push_back(glyph);
   }
-  return glyphs;
+  return shaped;
 }
 
 }  // namespace
@@ -408,11 +424,14 @@ Line shape(const Text& text) {
   for (const Span& span : text.spans) {
     // most are as they were written
     const bool own = span.face >= Face::math_italic && font_file(span.face).alphabets;
-    const std::vector<Placed>& placed =
-        glyphs_of(span.face, own ? characters_of(span) : span.text, span.tabular);
+    const std::string letters = own ? characters_of(span) : span.text;
+    const auto& [placed, lacking] = glyphs_of(span.face, letters, span.tabular);
     const double em = span.size / font(span.face).units();
     line.width += span.lead;
     Shaped shaped{span.face, span.size, span.color, {}};
+    if (!lacking.empty()) shaped.drawn = letters;
+    for (auto at = lacking.rbegin(); at != lacking.rend(); ++at)
+      shaped.drawn.replace(*at, sign_at(letters, *at).length, kBoxLetter);
     shaped.glyphs.reserve(placed.size());
     double pen = 0;
     for (const Placed& glyph : placed) {

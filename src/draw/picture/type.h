@@ -21,6 +21,7 @@ struct Shaped {
   double size = 0;  // em, page units
   Color color;
   std::vector<Glyph> glyphs;
+  std::string drawn{};  // the span's text with boxes for letters that the font lacks, where it lacks any
 };
 
 /// A line of type with its glyphs placed from (0, 0) on the baseline, and its width in page units.
