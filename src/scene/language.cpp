@@ -135,9 +135,9 @@ std::vector<Key> world_rows() {
       {.path = "physics.impacts", .form = choice, .fallback = "\"simultaneous\"",
        .choices = {"simultaneous", "sequential"},
        .doc = "Impacts at the same instant: solved together, or pair after pair, as Newton's cradle needs. The iterative "
-              "solver takes together what hangs together by up to eight contacts, in space sixteen; of more, in the plane, what a "
-              "bouncing blow makes close, up to sixteen and among at most fifty bodies forty, and else pair after pair, where the "
-              "order of the file decides.",
+              "solver takes together what hangs together by up to eight contacts, in space sixteen; of more, among at most fifty "
+              "bodies, what hangs on joints, up to 55 (in space 36), and in the plane what strikes in several places at once or a "
+              "bouncing blow makes close, up to 55 (among more bodies 16); else pair after pair, where the order of the file decides.",
        .example = "\"sequential\""},
       {.path = "physics.rotation", .form = boolean, .fallback = "true",
        .doc = "Whether bodies turn. `false`: forces move bodies but never turn them.", .example = "false"},

@@ -991,6 +991,65 @@ TEST(Impacts, PassThroughARowThatSleeps) {
   }
 }
 
+// A cradle of many balls on rods that touch: all of them meet the blow together, as by the direct solver.
+TEST(Impacts, ACradleOfManyOnRodsTakesABlowTogether) {
+  for (const int dimension : {2, 3}) {
+    const char* z = dimension == 2 ? "" : ", 0";
+    for (const int balls : {9, 10, 25}) {
+      const auto ends = [&](const char* solver, int rate) {
+        std::string text = fmt::format(
+            "duration = 2\n[room]\nwalls = 'none'\nsize = [20, 6{}]\n[physics]\nsolver = "
+            "'{}'\nrate = {}\n",
+            dimension == 2 ? "" : ", 6", solver, rate);
+        for (int i = 0; i < balls; ++i) {
+          const double x = 5 + 0.2 * i, x0 = i == 0 ? x - 2 * std::sin(0.5) : x,
+                       y0 = 4 - 2 * (i == 0 ? std::cos(0.5) : 1);
+          text += fmt::format(
+              "[[ball]]\nname = 'b{0}'\nradius = 0.1\nmass = 1\nelasticity = 1\nfriction = 0\nposition = "
+              "[{1:.17g}, {2:.17g}{4}]\n[[joint]]\ntype = 'rod'\nbetween = [[{3:.17g}, 4{4}], 'b{0}']\n",
+              i, x0, y0, x, z);
+        }
+        const TextRun run(text);
+        const sim::Snapshot now = run.at(1.2);
+        return std::pair(now.bodies.front().velocity.x(), now.bodies.back().velocity.x());
+      };
+      const auto want = ends("direct", 600);
+      EXPECT_LT(want.first, -0.5);
+      for (const int rate : {60, 600}) {
+        const auto got = ends("iterative", rate);
+        EXPECT_NEAR(got.first, want.first, 1e-4) << dimension << balls << rate;
+        EXPECT_NEAR(got.second, want.second, 1e-4) << dimension << balls << rate;
+      }
+    }
+  }
+}
+
+// A box that a belt's end draws down against another on the floor, from the fall of a parcel: no impulses
+// hold it there. It comes out slowly, and the run goes on: by events it had been thrown out at hundreds of
+// metres a second, by iterations its blows had no end.
+TEST(Impacts, WhatABeltWedgesInComesOutSlowly) {
+  for (const Manner& manner : kManners) {
+    for (const int rate : {60, 240, 600, 1200}) {
+      SCOPED_TRACE(manner.name + " " + std::to_string(rate));
+      const TextRun run(fmt::format(
+          "duration = 0.2\n[room]\nsize = [40, 10]\nwalls = 'ground'\nelasticity = 0.2\nfriction = "
+          "0.5\n{}\nrate = "
+          "{}\n[[box]]\nname = 'belt'\nsize = [16, 0.4]\nposition = [20, 1]\nfixed = true\nfriction = "
+          "0.8\nsurface_speed = 1.5\n[[box]]\nname = 'parcel'\nsize = [0.4, 0.3]\nposition = "
+          "[28.033979327767632, 0.5602361766731958]\nangle = 132.29754323867013\nvelocity = "
+          "[-0.5864230698612449, -0.4430859136279125]\nspin = 209.685393334607\nmass = 2\n[[box]]\nname = "
+          "'other'\nsize = [0.4, 0.3]\nposition = [28.305474571679824, 0.20031729574810112]\nangle = "
+          "90.12141741861605\nvelocity = [-1.607e-7, 7.17e-8]\nspin = 2.747e-5\nmass = 3\n",
+          manner.keys, rate));
+      const double begun = run.at(0).energies.total();
+      const sim::Snapshot now = run.at(0.1);
+      EXPECT_LT(now.bodies[number_of(run, "parcel")].velocity.norm(), 2);
+      EXPECT_NEAR(now.bodies[number_of(run, "parcel")].position.x(), 27.97, 0.05);
+      EXPECT_LT(now.energies.total(), begun + 1);  // the belt works on it
+    }
+  }
+}
+
 // Balls of clay that meet a plank side by side go on with it as one: v = -3 n / (n + 5), and it does not
 // turn.
 TEST(Impacts, ClayThatMeetsAPlankAllAtOnceGoesOnAsOne) {

@@ -288,16 +288,16 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
 // how bodies stand before ropes on wheels go on
 template <int D>
 void Stepper<D>::note_ropes(const State<D>& state) {
-  rope_ends_.resize(wound_ropes_ ? model_.bodies.size() : 0);
-  for (std::size_t body = 0; body < rope_ends_.size(); ++body)
-    rope_ends_[body] = body_motion(state, int(body));
+  before_piece_.resize(wound_ropes_ ? model_.bodies.size() : 0);
+  for (std::size_t body = 0; body < before_piece_.size(); ++body)
+    before_piece_[body] = body_motion(state, int(body));
 }
 
 // ropes to where they are now, after `done` s
 template <int D>
 std::optional<Trouble> Stepper<D>::follow_pulleys(State<D>& state, double t, double done) const {
   if (!pulleys_) return {};
-  const std::optional<int> ended = follow_ropes(model_, state, rope_ends_, done);
+  const std::optional<int> ended = follow_ropes(model_, state, before_piece_, done);
   if (!ended) return {};
   return Trouble{t, model_.joints[std::size_t(*ended)].name, "straight piece",
                  "has no length left: its end comes to what the rope runs over",

@@ -174,6 +174,9 @@ void ExactSolver<D>::attempt_impacts(State<D>& state, double bounce) {
     for (int i = 0; i < kMostRubs && rub(i); ++i) found = solve();
     if (!found && model_.collision != Collision::event)
       progress_.rough = progress_.limited = true, found = solve();
+    // what jams, as between a belt and what stands before it, does not bounce, and is left as near as it
+    // comes
+    if (!found && share == 0) solve_roughly();
     // what bodies that are moved give is theirs
     double gives = 0;
     for (int i = 0; i < int(rows_.size()); ++i) gives += f_[i] * given(i);

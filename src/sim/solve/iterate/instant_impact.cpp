@@ -91,12 +91,36 @@ double InstantImpact<D>::attempt(double share) {
   return rise();
 }
 
+// What finds no impulses as it bounces, as between a belt and what stands before it, does not bounce; where
+// none are found so either, what many sweeps come to, if it gains nothing and leaves nothing that closes as
+// fast as before.
+template <int D>
+bool InstantImpact<D>::jam() {
+  constexpr int kMany = 500;
+  constexpr double kLeft = 0.1;  // of the fastest that strikes
+  double gained = attempt(0);
+  if (!std::isfinite(gained)) {
+    modes_.assign(blocks.size(), {}), p.setZero(speeds.size());
+    cone_.sweep(K, speeds, blocks, modes_, p, kMany);
+    gained = rise();
+    double before = 0, after = 0;
+    for (int k = 0; k < int(strikes.size()); ++k) {
+      before = std::max(before, -speeds[D * k]);
+      after = std::max(after, -(speeds[D * k] + K.row(D * k).dot(p)));
+    }
+    jams_ = !(after <= kLeft * before);
+  }
+  if (jams_ || !(gained <= 0)) return false;
+  p += rested_;
+  return true;
+}
+
 template <int D>
 bool InstantImpact<D>::solve() {
-  cone_.patience = kPatience;
+  cone_.patience = kPatience, jams_ = false;
   rest();
   double gained = attempt(1);
-  if (!std::isfinite(gained)) return false;
+  if (!std::isfinite(gained)) return jam();
   restitution_share(1, [&](double share) { return share == 1 ? gained : gained = attempt(share); });
   p += rested_;
   return std::isfinite(gained);

@@ -41,6 +41,8 @@ class InstantImpact {
   void resize(int contacts, int ends = 0);
   /// Finds p. False where no impulses are found.
   bool solve();
+  /// Whether none were found as no impulses hold it: friction of what moves, as of a belt, wedges bodies in.
+  bool jams() const { return jams_; }
   /// What of p has held what rests since the step began, N s.
   const Rows& rested() const { return rested_; }
 
@@ -49,7 +51,9 @@ class InstantImpact {
   void rest();
   double rise() const;
   double attempt(double share);
+  bool jam();
 
+  bool jams_ = false;
   Rows b_, rested_, part_;
   Matrix rest_rows_;
   std::vector<int> resting_;  // rows

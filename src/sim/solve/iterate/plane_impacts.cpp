@@ -20,8 +20,9 @@ namespace obscura::sim::plane {
 
 namespace {
 
-constexpr std::size_t kPairsAhead = 4;  // pairs that are asked for, as they are far apart in memory
-constexpr double kNoTarget = -1e9;      // m/s: of a speed that nothing aims at
+constexpr std::size_t kPairsAhead = 4;      // pairs that are asked for, as they are far apart in memory
+constexpr std::size_t kMostAtOnce = 30000;  // impacts of an instant, of what bounces less than wholly
+constexpr double kNoTarget = -1e9;          // m/s: of a speed that nothing aims at
 
 // of a body's fastest point, at most, m/s
 double swiftness(const Motion& v, double radius) {
@@ -396,6 +397,7 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
   for (const Impact& impact : impacts_) {
     if (impact.pair < int(impacts_of_.size())) impacts_of_[impact.pair] = 0;
   }
+  jammed_.assign(now_.size(), 0);
   bodies_.clear(), impacts_.clear(), due_.clear(), predicted_.clear(), passing_.clear();
   rows_.clear(), groups_.clear(), queue_.clear(), drive_work_ = 0;
   if (found.empty()) return -1;
@@ -407,6 +409,7 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
   // which lane a pair has hangs on the steps before; the order of pairs does not
   std::sort(queue_.begin(), queue_.end());
   double now = 0;
+  std::size_t before = 0;  // impacts before this instant
   for (std::size_t at = 0;;) {
     Impact impact;
     if (at < queue_.size()) {
@@ -423,11 +426,16 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
       const ImpactQueue::Due due = due_.pop();
       impact = predicted_[due.number];
       if (due.rounds != rounds(pairs[impact.pair])) continue;
+      if (due.when > now) before = impacts_.size();
       now = due.when;
     } else {
       break;
     }
     const Pair& pair = pairs[impact.pair];
+    // what loses at each of them ends, but where friction of something that moves feeds it, as of a belt that
+    // wedges a box: then nothing bounces there
+    if (impacts_.size() - before > kMostAtOnce && pair.material.elasticity < 1) jam(pair);
+    if (jams(pair)) continue;
     if (impacts_.size() >= kMostImpacts) {
       for (const int i : queue_) waiting_[i] = 0;
       return pair.a;
@@ -439,6 +447,7 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
       }
       continue;
     }
+    if (jams(pair)) continue;
     if (resolve(impact, batches, step)) had_impact(impact, step);
   }
 

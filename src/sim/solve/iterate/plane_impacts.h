@@ -145,6 +145,10 @@ class Impacts {
   bool grow_instant(const Impact& first, const std::vector<ContactBatch>& batches, const Step& step);
   bool near_at(const Pair& pair, int body, double when, const Step& step) const;
   bool knows(int pair) const;
+  void jam(const Pair& pair);
+  bool jams(const Pair& pair) const {
+    return jammed_[std::size_t(pair.a)] || (pair.b >= 0 && jammed_[std::size_t(pair.b)]);
+  }
   bool crowd() const;
   int most_together() const;
   static bool on_joints(int body, const Step& step);
@@ -222,6 +226,7 @@ class Impacts {
   int spent_ = 0;                            // on large ones of these
   std::vector<char> crowded_;                // of bodies: their impacts go pair after pair in this substep
   std::vector<int> crowd_;                   // these
+  std::vector<char> jammed_;                 // of bodies: no impulses end their impacts
   std::vector<Meeting> meetings_;            // in one instant, the first that was found first
   std::vector<std::pair<int, int>> closed_;  // their touches: of which meeting, which of its two
   StruckEnds<2> ends_;

@@ -28,6 +28,12 @@ std::pair<double, double> Impacts::place_at(int body, double when, const Step& s
   return {step.poses[body].x + way.x, step.poses[body].y + way.y};
 }
 
+// what a pair meets in this substep is left to the iterations
+void Impacts::jam(const Pair& pair) {
+  for (const int side : {pair.a, pair.b})
+    if (side >= 0 && now_[side].im > 0) jammed_[side] = 1;
+}
+
 // whether a body and the other of a pair of its are near enough to touch at a time
 bool Impacts::near_at(const Pair& pair, int body, double when, const Step& step) const {
   if (pair.b < 0) return true;
@@ -113,7 +119,11 @@ bool Impacts::gather_instant(const Impact& first, const std::vector<ContactBatch
   // what falls flat strikes with several of its bodies at once; in heaps a blow is one of a pair, and what
   // else touches rests
   const auto strikes = [&](const Meeting& it) { return it.impact.speed > kAtOnce * first.speed; };
-  return few && (int(closed_.size()) <= InstantImpact<2>::kFew ||
+  const bool tied = std::any_of(meetings_.begin(), meetings_.end(), [&](const Meeting& it) {
+    const Pair& pair = step.pairs[it.impact.pair];
+    return on_joints(pair.a, step) || on_joints(pair.b, step);
+  });
+  return few && (int(closed_.size()) <= InstantImpact<2>::few(tied, int(now_.size()) - 1) ||
                  std::count_if(meetings_.begin(), meetings_.end(), strikes) > 1);
 }
 
@@ -318,7 +328,12 @@ bool Impacts::resolve_instant(const Impact& first, const std::vector<ContactBatc
     if (tied) ends_.couple(joints, std::span(instant_responses_).first(std::size_t(rows)), instant_);
     ++instants_;
     if (count > InstantImpact<2>::kFew) spent_ += count * count;
-    if (!instant_.solve()) return false;
+    if (!instant_.solve()) {
+      // the iterations push it out as far as they come
+      for (const Meeting& meeting : meetings_)
+        if (instant_.jams()) jam(step.pairs[meeting.impact.pair]);
+      return false;
+    }
   }
 
   for (int k = 0; k < count; ++k) {
