@@ -24,6 +24,7 @@ void InstantImpact<D>::resize(int contacts, int ends) {
   const int rows = D * contacts + ends;
   K.resize(rows, rows), speeds.resize(rows), p.resize(rows);
   blocks.assign(std::size_t(contacts + ends), {});
+  driven = false;
   elasticity.assign(std::size_t(contacts), 0), strikes.assign(std::size_t(contacts), 0);
   for (int i = contacts; i < contacts + ends; ++i) {
     blocks[std::size_t(i)].law = Law::bounded, blocks[std::size_t(i)].lower = 0;
@@ -91,9 +92,9 @@ double InstantImpact<D>::attempt(double share) {
   return rise();
 }
 
-// What finds no impulses as it bounces, as between a belt and what stands before it, does not bounce; where
-// none are found so either, what many sweeps come to, if it gains nothing and leaves nothing that closes as
-// fast as before.
+// What finds no impulses as it bounces between a belt, or what is moved, and what stands before it, does not
+// bounce; where none are found so either, what many sweeps come to, if it gains nothing and leaves nothing
+// that closes as fast as before.
 template <int D>
 bool InstantImpact<D>::jam() {
   constexpr int kMany = 500;
@@ -120,7 +121,7 @@ bool InstantImpact<D>::solve() {
   cone_.patience = kPatience, jams_ = false;
   rest();
   double gained = attempt(1);
-  if (!std::isfinite(gained)) return jam();
+  if (!std::isfinite(gained)) return driven && jam();
   restitution_share(1, [&](double share) { return share == 1 ? gained : gained = attempt(share); });
   p += rested_;
   return std::isfinite(gained);

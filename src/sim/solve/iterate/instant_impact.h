@@ -36,6 +36,7 @@ class InstantImpact {
   std::vector<ConeBlock<D>> blocks;  // one a contact, with its friction, and one an end
   std::vector<double> elasticity;    // one a contact
   std::vector<char> strikes;         // one a contact; 0: too slow to bounce
+  bool driven = false;               // a belt, or what is moved, takes part
 
   /// Room for them; without friction and bounce.
   void resize(int contacts, int ends = 0);

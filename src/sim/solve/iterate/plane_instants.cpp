@@ -197,6 +197,12 @@ void Impacts::couple_instant(const std::vector<ContactBatch>& batches, const Ste
     const Push& push = push_of(i);
     instant_.speeds[i] = speed(push, meeting.a, meeting.b) + (i % 2 != 0 && g.belts ? g.belt[lane] : 0);
     instant_.blocks[k].mu = pair.material.friction;
+    const auto driven = [](double im, const Motion& u) {
+      return !(im > 0) && (u.x != 0 || u.y != 0 || u.w != 0);
+    };
+    instant_.driven = instant_.driven || (g.belts && g.belt[lane] != 0) ||
+                      driven(now_[pair.a].im, meeting.a) ||
+                      (pair.b >= 0 && driven(now_[pair.b].im, meeting.b));
     const auto gained = [&] { return speed(push, step.dv[pair.a], step.dv[pair.b >= 0 ? pair.b : room]); };
     if (i % 2 == 0 && instant_.speeds[i] < strike_speed(pair, g.impact_speed[lane], gained(), step))
       instant_.strikes[k] = 1, instant_.elasticity[k] = pair.material.elasticity;

@@ -150,6 +150,8 @@ void SpaceIterative::build_impact_rows(double t, double h) {
     const ContactConstraint& touch = touches_[meets_[k]];
     const Instant at = instant(meets_[k], t, h);
     instant_.blocks[k].mu = touch.mu;
+    instant_.driven = instant_.driven || !touch.belt.isZero(0) || drives_.number(touch.a) >= 0 ||
+                      (touch.b < n && drives_.number(touch.b) >= 0);
     set_rows(k, touch, at.now.normal, at.now.point - at.a.x, at.now.point - at.b.x, at.a, at.b);
     for (int i = 0; i < D; ++i) {
       const Row<D>& row = impact_rows_[D * k + i];
