@@ -336,7 +336,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void find_islands();
   void build_K();
   bool solve();
-  void solve_roughly();
+  void solve_roughly(int most = 4000);
   void solve_held();
   void solve_least_norm();
   template <class Solve>

@@ -8,9 +8,9 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr int kFewestRoughSweeps = 40, kMostRoughSweeps = 4000;  // of a rough solve: as many as
-constexpr double kRoughSize = 2e7;                               // elements of K can be visited in
-constexpr double kThoroughSize = 5e8;  // of the size of all systems that a thorough one solves
+constexpr int kFewestRoughSweeps = 40;  // of a rough solve: as many as
+constexpr double kRoughSize = 2e7;      // elements of K can be visited in
+constexpr double kThoroughSize = 5e8;   // of the size of all systems that a thorough one solves
 
 }  // namespace
 
@@ -83,13 +83,12 @@ bool ExactSolver<D>::solve() {
   return found;
 }
 
-// the same, roughly
+// the same, roughly, by so many sweeps at most
 template <int D>
-void ExactSolver<D>::solve_roughly() {
+void ExactSolver<D>::solve_roughly(int most) {
   each_island(modes_, [&](std::vector<ConeMode<D>>& modes) {
     const double rows = double(scratch_.rows.size()),
-                 sweeps =
-                     std::clamp<double>(kRoughSize / (rows * rows), kFewestRoughSweeps, kMostRoughSweeps);
+                 sweeps = std::clamp<double>(kRoughSize / (rows * rows), kFewestRoughSweeps, most);
     cone_.sweep(scratch_.K, scratch_.island_b, scratch_.island_blocks, modes, scratch_.island_f, int(sweeps));
   });
 }
@@ -156,12 +155,12 @@ void ExactSolver<D>::solve_least_norm() {
 
 template void ExactSolver<2>::find_islands();
 template bool ExactSolver<2>::solve();
-template void ExactSolver<2>::solve_roughly();
+template void ExactSolver<2>::solve_roughly(int);
 template void ExactSolver<2>::solve_held();
 template void ExactSolver<2>::solve_least_norm();
 template void ExactSolver<3>::find_islands();
 template bool ExactSolver<3>::solve();
-template void ExactSolver<3>::solve_roughly();
+template void ExactSolver<3>::solve_roughly(int);
 template void ExactSolver<3>::solve_held();
 template void ExactSolver<3>::solve_least_norm();
 

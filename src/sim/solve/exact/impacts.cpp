@@ -17,6 +17,7 @@ namespace obscura::sim {
 namespace {
 
 constexpr int kRounds = 200;        // of pairs in turn
+constexpr int kJamSweeps = 100;     // where no impulses obey the laws
 constexpr double kGain = 1e-13;     // of the energy: rounding
 constexpr double kRounding = 1000;  // of what is still: what a solve leaves
 
@@ -176,7 +177,7 @@ void ExactSolver<D>::attempt_impacts(State<D>& state, double bounce) {
       progress_.rough = progress_.limited = true, found = solve();
     // what jams, as between a belt and what stands before it, does not bounce, and is left as near as it
     // comes
-    if (!found && share == 0) solve_roughly();
+    if (!found && share == 0) solve_roughly(kJamSweeps);
     // what bodies that are moved give is theirs
     double gives = 0;
     for (int i = 0; i < int(rows_.size()); ++i) gives += f_[i] * given(i);
