@@ -181,7 +181,7 @@ TEST_F(Compare, WritesOverNoneOfItsInputs) {
   EXPECT_EQ(obscura("compare left right --diff left.png").exit, 1);
 }
 
-// A difference that nobody was told is no answer.
+// A difference that is not told is no answer.
 TEST_F(Compare, StandardOutputThatIsFullIsAnError) {
   still("a.png");
   still("b.png", "--theme screen");
