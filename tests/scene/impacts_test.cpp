@@ -1028,7 +1028,9 @@ TEST(Impacts, ACradleOfManyOnRodsTakesABlowTogether) {
 // hold it there. It comes out slowly, and the run goes on: by events it had been thrown out at hundreds of
 // metres a second, by iterations its blows had no end.
 TEST(Impacts, WhatABeltWedgesInComesOutSlowly) {
-  for (const Manner& manner : kManners) {
+  std::vector<Manner> manners = kManners;
+  manners.push_back({"iterative, in turn", kManners.back().keys + "\nimpacts = 'sequential'"});
+  for (const Manner& manner : manners) {
     for (const int rate : {60, 240, 600, 1200}) {
       SCOPED_TRACE(manner.name + " " + std::to_string(rate));
       const TextRun run(fmt::format(

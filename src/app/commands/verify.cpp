@@ -8,7 +8,6 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "app/compare/comparison.h"
@@ -221,8 +220,7 @@ std::optional<Origin> made_again(const Origin& origin, const std::string& file, 
   if (!origin.trajectory.empty()) now.run = run_of(file, origin, flags);
   if (!flags.scene) return now;
   if (!origin.sets.empty())
-    verdict.lines.push_back(
-        fmt::format("of the scene with --set {}, as it was made", fmt::join(origin.sets, " --set ")));
+    verdict.lines.push_back(fmt::format("of the scene with {}, as it was made", origin.set_flags()));
   now.scene_text = flags.scene_text;
   now.scene_hash = hash(now.scene_text);
   // an old scene that is not read any more does not tell which were flags

@@ -1,7 +1,6 @@
 #include "app/compare/golden_case.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -143,11 +142,6 @@ void keep_picture(const GoldenCase& it, const Pictured& made) {
   if (!fs::exists(ignore)) write_text(ignore.string(), "*\n");
 }
 
-// " with --set ball.mass=2": a record is of the scene as its file says, and so are the pictures beside it
-std::string with_sets(const Origin& origin) {
-  return origin.sets.empty() ? "" : fmt::format(" with --set {}", fmt::join(origin.sets, " --set "));
-}
-
 // holds a moment against its hashes, and against the picture that they are of where it lies at hand
 void judge_record(const scene::Golden& golden, const GoldenRecord& record, const Pictured& made,
                   const GoldenOptions& options, GoldenCase& it) {
@@ -165,7 +159,8 @@ void judge_record(const scene::Golden& golden, const GoldenRecord& record, const
   if (const auto of = picture ? origin_in(picture->tags) : std::nullopt; of && !of->sets.empty())
     picture.reset();
   const bool text = record.scene == record_of({it.time}, {made}).scene;
-  const std::string sets = with_sets(made.origin);
+  // a record is of the scene as its file says, and so are the pictures beside it
+  const std::string sets = made.origin.sets.empty() ? "" : " with " + made.origin.set_flags();
   if (state && pixels) {
     it.state = "same";
     if (!text) it.lines.push_back("state and picture are the same; the text of the scene is another one");

@@ -165,9 +165,9 @@ double value_near(const std::vector<double>& of_a, const std::vector<double>& ro
   const double x = of_a[column.a];
   double y = row[column.b];
   if (column.quantity == "angle" && std::isfinite(x) && std::isfinite(y)) {
-    constexpr double turn = 2 * std::numbers::pi;
-    const double rest = std::remainder(y - x, turn);
-    turns = std::round((y - x - rest) / turn);
+    constexpr double kTurn = 2 * std::numbers::pi;
+    const double rest = std::remainder(y - x, kTurn);
+    turns = std::round((y - x - rest) / kTurn);
     y = x + rest;
   }
   if (column.quantity == "orientation") {

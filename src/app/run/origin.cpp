@@ -48,6 +48,10 @@ std::string Origin::drawn_by() const {
                      native ? ", --native" : "");
 }
 
+std::string Origin::set_flags() const {
+  return sets.empty() ? "" : fmt::format("--set {}", fmt::join(sets, " --set "));
+}
+
 media::Tags Origin::tags(const std::string& title) const {
   nlohmann::ordered_json json;
   json["version"] = version;

@@ -52,6 +52,9 @@ struct Origin {
   /// (LLVM 15.0.6, 256 bits)".
   std::string drawn_by() const;
 
+  /// "--set ball.mass=2 --set seed=3"; empty where no keys were set.
+  std::string set_flags() const;
+
   /// As the tags of a file: "Software", "Title", and the whole as JSON under "obscura".
   media::Tags tags(const std::string& title) const;
 };

@@ -184,28 +184,32 @@ std::optional<Trouble> DivergenceMonitor<D>::check_squeezed(const State<D>& stat
     Vec<D> normal;
     double depth;
   };
-  std::vector<Side> sides;
   const auto stays = [&](int body) { return body < 0 || model_.bodies[std::size_t(body)].fixed; };
+  const auto side_of = [&](const Contact<D>& contact) -> std::optional<Side> {
+    const auto [a, b, feature] = contact.key;
+    if (!(contact.gap < 0) || stays(a) == stays(b)) return {};
+    if (stays(b)) return Side{a, b, contact.normal, -contact.gap};
+    return Side{b, a, -contact.normal, -contact.gap};
+  };
   const auto moved = [&](const Side& side) {
     return side.by >= 0 && model_.bodies[std::size_t(side.by)].driven;
   };
+  const auto name = [&](int body) { return body < 0 ? std::string("the walls") : named(model_, body); };
   for (const Contact<D>& contact : state.contacts) {
-    const auto [a, b, feature] = contact.key;
-    if (!(contact.gap < 0) || stays(a) == stays(b)) continue;
-    const bool first = stays(b);
-    const Side side{first ? a : b, first ? b : a, first ? contact.normal : Vec<D>(-contact.normal),
-                    -contact.gap};
-    for (const Side& other : sides) {
-      if (other.body != side.body || other.by == side.by || !(moved(side) || moved(other))) continue;
-      if (!(other.normal.dot(side.normal) < kOpposite)) continue;
-      const double width = 2 * half_thickness(model_.bodies[std::size_t(side.body)].shape);
-      if (!(side.depth + other.depth > kSqueezed * width) || !(width > 0)) continue;
-      const auto name = [&](int body) { return body < 0 ? std::string("the walls") : named(model_, body); };
-      return Trouble{t, named(model_, side.body), "place",
-                     "has no room left between " + name(other.by) + " and " + name(side.by),
+    const auto deep = side_of(contact);
+    if (!deep) continue;
+    // of both sides the deeper is half of it at least
+    const double width = 2 * half_thickness(model_.bodies[std::size_t(deep->body)].shape);
+    if (!(width > 0) || !(deep->depth > 0.5 * kSqueezed * width)) continue;
+    for (const Contact<D>& beside : state.contacts) {
+      const auto other = side_of(beside);
+      if (!other || other->body != deep->body || other->by == deep->by) continue;
+      if (!(moved(*deep) || moved(*other)) || !(other->normal.dot(deep->normal) < kOpposite)) continue;
+      if (!(deep->depth + other->depth > kSqueezed * width)) continue;
+      return Trouble{t, named(model_, deep->body), "place",
+                     "has no room left between " + name(other->by) + " and " + name(deep->by),
                      "nothing stops either of them: let what is moved end before"};
     }
-    sides.push_back(side);
   }
   return {};
 }

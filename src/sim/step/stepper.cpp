@@ -285,12 +285,17 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
   return {};
 }
 
-// how bodies stand before ropes on wheels go on
+// how bodies on ropes on wheels stand before these go on
 template <int D>
 void Stepper<D>::note_ropes(const State<D>& state) {
-  before_piece_.resize(wound_ropes_ ? model_.bodies.size() : 0);
-  for (std::size_t body = 0; body < before_piece_.size(); ++body)
-    before_piece_[body] = body_motion(state, int(body));
+  if (!wound_ropes_) return;
+  before_piece_.resize(model_.bodies.size());
+  for (const Joint<D>& joint : model_.joints) {
+    if (!winds(joint)) continue;
+    joint.each_body([&](int body) {
+      if (body >= 0) before_piece_[std::size_t(body)] = body_motion(state, body);
+    });
+  }
 }
 
 // ropes to where they are now, after `done` s

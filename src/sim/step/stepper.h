@@ -125,12 +125,11 @@ class Stepper {
   std::vector<double> spring_angles_;
   std::vector<int> by_handout_;  // bodies with that law in `contact` and `event` too
   Stages stages_;
-  std::int64_t watch_every_ = 1;  // steps
-  bool springs_ = false;          // something may ever feed it
-  bool wound_ropes_ = false;      // ropes run on wheels
-  bool pulleys_ = false;          // ropes run over anything
-  std::vector<BodyMotion<D>>
-      before_piece_;  // bodies, as a piece of a step begins; none without ropes on wheels
+  std::int64_t watch_every_ = 1;             // steps
+  bool springs_ = false;                     // something may ever feed it
+  bool wound_ropes_ = false;                 // ropes run on wheels
+  bool pulleys_ = false;                     // ropes run over anything
+  std::vector<BodyMotion<D>> before_piece_;  // of a step: bodies on ropes on wheels
 };
 
 }  // namespace obscura::sim

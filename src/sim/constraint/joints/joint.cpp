@@ -114,7 +114,7 @@ std::optional<int> follow_ropes(const Model<D>& model, State<D>& state,
     const JointPose<D> at = pose(all);
     bool ends = comes_to_its_end(at, h);
     if constexpr (D == 2) {
-      if (joint.on_a.offset != 0 || joint.on_b.offset != 0 || !joint.around.empty()) {
+      if (winds(joint)) {
         const auto now = on_wheels(at, h);
         ends = ends || !now || (!begun.empty() && met_rims(pose(begun), at, done));
         if (now) state.wound[i] = *now;

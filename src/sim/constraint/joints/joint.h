@@ -100,13 +100,15 @@ template <int D>
 int rows(const Joint<D>& joint, std::size_t number, const State<D>& state,
          std::type_identity_t<std::span<const BodyMotion<D>>> at, Row<D>* out, double* off);
 
-/// Whether a model has ropes on wheels, or with friction.
+/// Whether a joint is a rope on wheels, or with friction.
+template <int D>
+bool winds(const Joint<D>& joint) {
+  return joint.kind == JointKind::pulley &&
+         (joint.on_a.offset != 0 || joint.on_b.offset != 0 || !joint.around.empty());
+}
 template <int D>
 bool has_wound_ropes(const Model<D>& model) {
-  return std::any_of(model.joints.begin(), model.joints.end(), [](const Joint<D>& joint) {
-    return joint.kind == JointKind::pulley &&
-           (joint.on_a.offset != 0 || joint.on_b.offset != 0 || !joint.around.empty());
-  });
+  return std::any_of(model.joints.begin(), model.joints.end(), winds<D>);
 }
 
 /// Whether it has ropes that run over something.

@@ -71,12 +71,8 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
   pose_driven(t);
   // also what comes down within it, slowly: that is no impact
   const double reach = std::max(limits_.touching_gap, 2 * h * kComing * limits_.rest_speed);
-  find_contacts(state, reach);
   // asleep they would be walls, also to what is still and is struck in this piece
-  while (wake_reached(state, true)) {
-    collect_bodies(state);
-    find_contacts(state, reach);
-  }
+  find_contacts_awake(state, reach, true);
   update_poses(state);
   collect_constraints(state, 1e300, reach);
   save(state, interval_.begun);
@@ -143,11 +139,7 @@ void ExactSolver<D>::step_by_impulses(State<D>& state, double t, double h) {
 
   // push apart bodies that overlap now and did not before
   pose_driven(t + h);
-  find_contacts(state, limits_.touching_gap);
-  while (wake_reached(state, true)) {
-    collect_bodies(state);
-    find_contacts(state, limits_.touching_gap);
-  }
+  find_contacts_awake(state, limits_.touching_gap, true);
   collect_constraints(state);
   build_blocks(true);
   find_islands();

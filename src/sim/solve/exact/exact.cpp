@@ -277,11 +277,7 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
     progress_.passes = false;
     pose_driven(t + done);
     stepped_ = done;
-    find_contacts(state, limits_.touching_gap);
-    if (wake_reached(state)) {
-      collect_bodies(state);
-      find_contacts(state, limits_.touching_gap);
-    }
+    find_contacts_awake(state, limits_.touching_gap);
     if (done == 0) hold_again(state);
     resolve_contact_impacts(state);
     bool cut = true;
@@ -342,13 +338,9 @@ void ExactSolver<D>::step_group(State<D>& state, double t, double h) {
   progress_.rest_speed = slowest;
   stepped_ = h;
   pose_driven(t + h);
-  find_contacts(state, limits_.touching_gap);
+  find_contacts_awake(state, limits_.touching_gap);
   for (const int i : active_.joints)
     if (limits_.wires) step_.on_piece[std::size_t(i)] = on_piece_[std::size_t(i)];
-  if (wake_reached(state)) {
-    collect_bodies(state);
-    find_contacts(state, limits_.touching_gap);
-  }
   resolve_contact_impacts(state);
   if (progress_.limited) state.limits_met.work.note(state.step);
   // the forces that joints are shown with and break by are those of the end

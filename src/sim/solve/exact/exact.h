@@ -336,7 +336,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void find_islands();
   void build_K();
   bool solve();
-  void solve_roughly(int most = 4000);
+  static constexpr int kMostRoughSweeps = 4000;
+  void solve_roughly(int most = kMostRoughSweeps);
   void solve_held();
   void solve_least_norm();
   template <class Solve>
@@ -353,7 +354,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void record_impulse(const ContactKey& key, const Constraint& constraint, const Vec<D>& impulse);
 
   // exact_sleep.cpp
-  bool wake_reached(State<D>& state, bool all = false);
+  bool wake_reached(State<D>& state, bool all);
+  void find_contacts_awake(State<D>& state, double margin, bool all = false);
   bool wake_struck(State<D>& state);
   void wake_near_driven(State<D>& state, double t, double h);
   void put_to_sleep(State<D>& state, double t, double h);

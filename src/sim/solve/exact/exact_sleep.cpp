@@ -19,8 +19,7 @@ constexpr double kStill = 0.1;  // s: what has not moved for so long is still
 
 }  // namespace
 
-// wakes what something awake touches or holds, `all` of it or not what is still beside what is. True where it
-// did
+// Wakes what something awake touches or holds; what lies still beside it only with `all`. True where it did.
 template <int D>
 bool ExactSolver<D>::wake_reached(State<D>& state, bool all) {
   const auto& bodies = active_.subset.bodies;
@@ -42,6 +41,17 @@ bool ExactSolver<D>::wake_reached(State<D>& state, bool all) {
     scratch_.near.back().key = gap.key, scratch_.near.back().gap = -limits_.touching_gap;
   }
   return sleep_.wake(state, scratch_.near, 0, 0);
+}
+
+// Contacts up to a gap of `margin`, m, with those of what wakes by them; with `all` of what wakes by these,
+// too.
+template <int D>
+void ExactSolver<D>::find_contacts_awake(State<D>& state, double margin, bool all) {
+  find_contacts(state, margin);
+  for (bool more = true; more && wake_reached(state, all); more = all) {
+    collect_bodies(state);
+    find_contacts(state, margin);
+  }
 }
 
 // Wakes what touches something that is struck at this instant, through all that lies between: asleep it would
@@ -156,10 +166,10 @@ void ExactSolver<D>::find_accelerations(State<D>& state, double t) {
 
 template void ExactSolver<2>::wake_near_driven(State<2>&, double, double);
 template void ExactSolver<3>::wake_near_driven(State<3>&, double, double);
-template bool ExactSolver<2>::wake_reached(State<2>&, bool);
+template void ExactSolver<2>::find_contacts_awake(State<2>&, double, bool);
 template bool ExactSolver<2>::wake_struck(State<2>&);
 template void ExactSolver<2>::put_to_sleep(State<2>&, double, double);
-template bool ExactSolver<3>::wake_reached(State<3>&, bool);
+template void ExactSolver<3>::find_contacts_awake(State<3>&, double, bool);
 template bool ExactSolver<3>::wake_struck(State<3>&);
 template void ExactSolver<3>::put_to_sleep(State<3>&, double, double);
 
