@@ -86,6 +86,10 @@ if(OBSCURA_SUMS)
   target_compile_definitions(obscura_sim INTERFACE $<INSTALL_INTERFACE:${OBSCURA_SUMS}>)
 endif()
 
+# sim first, as in the program (CMakeLists.txt)
+target_link_options(obscura_obscura INTERFACE
+                    "$<INSTALL_INTERFACE:LINKER:--whole-archive,$<TARGET_FILE:obscura::sim>,--no-whole-archive>")
+
 # the one header is included as <obscura/obscura.h>
 target_include_directories(obscura_obscura INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 
