@@ -8,8 +8,8 @@
 namespace obscura::sim {
 
 /// Collision filter. Two bodies do not touch if both are fixed, both are points, one follows the handout's
-/// law, their groups ignore each other, or a joint between them forbids it, unless an event is yet to make it.
-/// One that has broken forbids it until they are apart: ContactStep then lets its bodies touch.
+/// law, their groups ignore each other, or a joint between them forbids it, unless an event is yet to make
+/// it. One that has broken forbids it until they are apart: ContactStep then lets its bodies touch.
 template <int D>
 class MayTouch {
  public:

@@ -166,10 +166,10 @@ template <int D>
 void collide(int a, const Shape<D>& shape_a, const BodyMotion<D>& at_a, int b, const Shape<D>& shape_b,
              const BodyMotion<D>& at_b, double margin, std::vector<ContactCandidate<D>>& out);
 
-/// The sine of the angle between two faces from which on they are askew: where a corner of the one touches
-/// the other face, what else of their overlap is askew touches nothing before they have turned. A corner that
-/// slides past the end of a face would be struck by it: within the depth of an overlap the end meets the
-/// other side of the corner.
+/// The sine of the angle between two faces above which they are askew. Of an overlap whose faces are askew
+/// the corner that touches is a contact, and the face's end is none: it touches only when the bodies have
+/// turned. As a contact it would strike a corner that slides past it, for it lies, by the depth of the
+/// overlap, at the other side of that corner.
 inline constexpr double kAskew = 0.03;
 /// Faces whose sine is less are parallel: they can trade their corners.
 inline constexpr double kParallel = 1e-3;

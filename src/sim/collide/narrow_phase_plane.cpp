@@ -24,7 +24,7 @@ namespace obscura::sim {
 
 namespace {
 
-constexpr double kOblique = 1e-10;    // of faces that are not parallel: kAligned
+constexpr double kOblique = 1e-10;    // the sine from which on faces are no longer parallel
 constexpr double kBeyondFace = 1e-9;  // of a face: this far beyond its end is still over it
 
 using CandidateKind = ContactCandidate<2>::Kind;

@@ -161,14 +161,6 @@ double speed(const Row<D>& row, const std::vector<BodyMotion<D>>& bodies) {
 }
 
 template <int D>
-EvaluatedContact<D> width(const ContactCandidate<D>& gap, const BodyMotion<D>& a, const BodyMotion<D>& b) {
-  EvaluatedContact<D> at;
-  const Carried<D> c = carried(gap, a, b, at.value);
-  at.point = c.point, at.normal = c.n;
-  return at;
-}
-
-template <int D>
 EvaluatedContact<D> rows(const ContactCandidate<D>& gap, const BodyMotion<D>& a, const BodyMotion<D>& b,
                          Row<D>* out) {
   EvaluatedContact<D> at;
@@ -212,7 +204,6 @@ void add_belts(const Model<D>& model, const ContactKey& key, const std::vector<B
 
 template struct Row<2>;
 template double speed<2>(const Row<2>&, const std::vector<BodyMotion<2>>&);
-template EvaluatedContact<2> width<2>(const ContactCandidate<2>&, const BodyMotion<2>&, const BodyMotion<2>&);
 template EvaluatedContact<2> rows<2>(const ContactCandidate<2>&, const BodyMotion<2>&, const BodyMotion<2>&,
                                      Row<2>*);
 template Vec<2> belt_velocity<2>(const Body<2>&, const Rotation<2>&, const Vec<2>&);
@@ -221,7 +212,6 @@ template void add_belts<2>(const Model<2>&, const ContactKey&, const std::vector
 template void add_belts<3>(const Model<3>&, const ContactKey&, const std::vector<BodyMotion<3>>&, Row<3>*);
 template struct Row<3>;
 template double speed<3>(const Row<3>&, const std::vector<BodyMotion<3>>&);
-template EvaluatedContact<3> width<3>(const ContactCandidate<3>&, const BodyMotion<3>&, const BodyMotion<3>&);
 template EvaluatedContact<3> rows<3>(const ContactCandidate<3>&, const BodyMotion<3>&, const BodyMotion<3>&,
                                      Row<3>*);
 

@@ -89,10 +89,6 @@ Vec<D> tangent(const Vec<D>& n, int i) {
 template <int D>
 double speed(const Row<D>& row, const std::vector<BodyMotion<D>>& bodies);
 
-/// The candidate as evaluate() has it, by the same terms as the rows below.
-template <int D>
-EvaluatedContact<D> width(const ContactCandidate<D>& gap, const BodyMotion<D>& a, const BodyMotion<D>& b);
-
 /// The rows of a gap: the first is d(gap)/dt, then D-1 tangents. `a` and `b`: how its sides stand and move.
 template <int D>
 EvaluatedContact<D> rows(const ContactCandidate<D>& gap, const BodyMotion<D>& a, const BodyMotion<D>& b,

@@ -1,9 +1,10 @@
 // Energy without a source. Kinetic energy, springs, and gravity's potential above its start stay below the
 // budget
-//   fund = their start + work of displacing + sum over bodies of m g L + m u^2
-//        + sum over springs of k (L/10)^2 / 2 + sum over hands of k (4 L + way)^2 / 2
+//   budget = their start, with that of fields, + work of displacing and of pushing out of walls
+//          + sum over bodies of m g L + m u^2 + sum over joints' springs of k / 2, a radian of each
+//          + sum over springs of k (L/10)^2 / 2 + sum over hands of k (4 L + way)^2 / 2
 //     L  room's height, u  speed of the fastest hand, but L/10 a second at least
-// unless the integration adds energy. A hundred times the fund is proof; four times, if the step is longer
+// unless the integration adds energy. A hundred times the budget is proof; four times, if the step is longer
 // than the integrator's limit.
 
 #include "sim/energy/divergence_monitor.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sim/collide/near_pair.h"
+#include "sim/collide/pair_candidates.h"
 #include "sim/multibody/chains.h"
 #include "sim/solve/iterate/joint_solver.h"
 
@@ -63,7 +63,7 @@ void ContactStep<D>::find_apart(State<D>& state) {
     if (state.broken[i] != 1 || joint.touching || joint.later || a < 0 || b < 0 ||
         joint.kind == JointKind::pulley || joint.kind == JointKind::gear)
       continue;
-    const auto near = near_pair(model_, state, a, b, 0);
+    const auto near = pair_candidates(model_, state, a, b, 0);
     const auto deep = [&](const ContactCandidate<D>& it) { return it.value < -kTouches * model_.scale; };
     if (std::none_of(near.begin(), near.end(), deep)) state.broken[i] = kGoneApart;
   }
@@ -95,8 +95,7 @@ void ContactStep<D>::step(State<D>& state, double t, double h) {
   // contacts that separate within the step are not reported after it
   touched_.clear();
   for (const Contact<D>& contact : state.contacts)
-    if (exact_ || contact.touching != ContactMode::open)
-      touched_.emplace_back(contact.key.a, contact.key.b);
+    if (exact_ || contact.touching != ContactMode::open) touched_.emplace_back(contact.key.a, contact.key.b);
   energy_guard_.open(state, t);
   if (lone_bodies_) lone_bodies_->find(state, t, h);
 

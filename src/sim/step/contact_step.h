@@ -43,12 +43,12 @@ class ContactStep {
   const Model<D>& model_;
   const std::vector<Path<D>>& paths_;
   Course<D>* course_ = nullptr;
-  std::vector<char> apart_;          // joints of kGoneApart, as the solver knows them
+  std::vector<char> apart_;          // by joint: it no longer holds its bodies (kGoneApart)
   std::unique_ptr<Model<D>> freed_;  // the model without what these forbid; null: there are none
   bool exact_;
   std::unique_ptr<ContactSolver<D>> solver_;
   EnergyGuard<D> energy_guard_;
-  std::vector<Vec<D>> pushed_;  // m: how far each body has been put right
+  std::vector<Vec<D>> pushed_;                  // m: how far each body has been put right
   std::unique_ptr<LoneBodies<D>> lone_bodies_;  // beside a solver for many
   std::vector<std::pair<int, int>> touched_;
   std::vector<char> jointed_;  // one a body

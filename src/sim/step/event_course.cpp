@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "sim/collide/near_pair.h"
+#include "sim/collide/pair_candidates.h"
 #include "sim/constraint/row.h"
 #include "sim/model/drives.h"
 #include "sim/step/events.h"
@@ -163,7 +163,7 @@ bool Events<D>::returns(const State<D>& state, std::pair<int, int> pair) {
   const double h = step_length(model.rate), ends = time({begun_.step + 1, 0}, model.rate);
   const int a = pair.first, b = pair.second;
   const BodyMotion<D> one = body_motion(state, a), other = b < 0 ? BodyMotion<D>() : body_motion(state, b);
-  const auto near = near_pair(model, state, a, b, std::sqrt(model.gravity.squaredNorm()) * h * h);
+  const auto near = pair_candidates(model, state, a, b, std::sqrt(model.gravity.squaredNorm()) * h * h);
   const double falls =
       (model.bodies[std::size_t(a)].fixed ? 0 : 1) - (b < 0 || model.bodies[std::size_t(b)].fixed ? 0 : 1);
   return std::any_of(near.begin(), near.end(), [&](const ContactCandidate<D>& gap) {
@@ -289,7 +289,7 @@ void Events<D>::join_with_these(State<D>& state, TimeStamp at, std::vector<Due>&
       char& on = state.events.on[std::size_t(slot(w, k))];
       if (on || joined(state, when, k) || !meets(state, when.pairs[std::size_t(k)])) continue;
       on = 1;
-      if (!act(state, Found{at.fraction, w, k, true, 0}, at)) continue;
+      if (!note_fired(state, Found{at.fraction, w, k, true, 0}, at)) continue;
       for (const Action& action : when.actions) actions.push_back({&action, k});
     }
   }
@@ -317,7 +317,7 @@ bool Events<D>::meets(const State<D>& state, std::pair<int, int> pair) const {
   const double moment = 4 * kTouchTime * step_length(model_.rate);
   const double fast =
       std::sqrt((one.v - other.v).squaredNorm()) + way_of_rim(model_, a, one) + way_of_rim(model_, b, other);
-  const auto near = near_pair(model_, state, a, b, moment * fast + kTouchingGap * model_.scale);
+  const auto near = pair_candidates(model_, state, a, b, moment * fast + kTouchingGap * model_.scale);
   return std::any_of(near.begin(), near.end(), [&](const ContactCandidate<D>& gap) {
     Row<D> J[D];
     rows(gap, one, other, J);

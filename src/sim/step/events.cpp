@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "sim/collide/near_pair.h"
+#include "sim/collide/pair_candidates.h"
 #include "sim/constraint/joints/joint.h"
 #include "sim/energy/energy.h"
 #include "sim/solve/contact_solver.h"
@@ -226,7 +226,7 @@ void Events<D>::begin(State<D>& state) {
     for (int k = 0; k < int(when.pairs.size()); ++k) {
       const auto [a, b] = when.pairs[std::size_t(k)];
       state.events.on[std::size_t(slot(w, k))] =
-          !near_pair(model_, state, a, b, kTouchingGap * model_.scale).empty();
+          !pair_candidates(model_, state, a, b, kTouchingGap * model_.scale).empty();
     }
   }
   // times that are the start
@@ -234,10 +234,10 @@ void Events<D>::begin(State<D>& state) {
   for (int w = 0; w < int(model_.whens.size()); ++w) {
     if (model_.whens[std::size_t(w)].on != On::time || !(times_[std::size_t(w)] == TimeStamp{state.step, 0}))
       continue;
-    act(state, {0, w, 0, true, 0}, {state.step, 0});
+    note_fired(state, {0, w, 0, true, 0}, {state.step, 0});
     for (const Action& action : model_.whens[std::size_t(w)].actions) actions.push_back({&action, 0});
   }
-  change(state, actions, {state.step, 0});
+  carry_out(state, actions, {state.step, 0});
 }
 
 template <int D>
@@ -318,7 +318,7 @@ std::optional<Trouble> Events<D>::advance(State<D>& state, double to) {
         cut_at = std::max(from, std::min(cut_at, found_[k].at - found_[k].before));
         // two that bounce twice in a step come to touch once where they are joined
         if (k > i && found_[k].when == found_[k - 1].when && found_[k].which == found_[k - 1].which) continue;
-        if (!act(state, found_[k], stamp)) continue;
+        if (!note_fired(state, found_[k], stamp)) continue;
         const When<D>& when = model_.whens[std::size_t(found_[k].when)];
         if (when.only_marks()) continue;
         for (const Action& action : when.actions) actions.push_back({&action, found_[k].which});
@@ -346,7 +346,7 @@ std::optional<Trouble> Events<D>::advance(State<D>& state, double to) {
                                                                                                  : 1;
       }
       join_with_these(state, stamp, actions);
-      change(state, actions, stamp);
+      carry_out(state, actions, stamp);
       from = cut_at;
     }
     if (cut) {
@@ -379,7 +379,7 @@ void Events<D>::sort_meetings() {
 
 // notes that a condition has become true; whether it fires
 template <int D>
-bool Events<D>::act(State<D>& state, const Found& found, TimeStamp at) {
+bool Events<D>::note_fired(State<D>& state, const Found& found, TimeStamp at) {
   char& done = state.events.done[std::size_t(found.when)];
   if (done && !model_.whens[std::size_t(found.when)].again) return false;
   done = 1;
@@ -389,7 +389,7 @@ bool Events<D>::act(State<D>& state, const Found& found, TimeStamp at) {
 
 // does what is asked for at one instant. What the room's hand gives by it of energy is work.
 template <int D>
-void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeStamp at) {
+void Events<D>::carry_out(State<D>& state, const std::vector<Due>& actions, TimeStamp at) {
   bool any = false, joined = false;
   std::vector<const Change<D>*> kicks;
   for (const auto& [action, which] : actions) {
@@ -465,7 +465,7 @@ void Events<D>::change(State<D>& state, const std::vector<Due>& actions, TimeSta
   std::fill(state.frozen.begin(), state.frozen.end(), 0);
   std::fill(state.quiet.begin(), state.quiet.end(), 0.0);
   stepper_->begin_anew(state, t);
-  if (joined || !kicks.empty()) jerk(state, at.fraction, t);
+  if (joined || !kicks.empty()) take_impulses_of_joining(state, at.fraction, t);
   // a kick works as far as what holds the body lets it
   if (!joined && !kicks.empty() && !state.work.empty()) state.work[0] = worked + given();
 }
@@ -508,7 +508,7 @@ void Events<D>::known_broken(State<D>& state, int joint, bool broken) {
 // Velocities with what has just been joined: after the impulses of this instant, which those of a moment
 // from it are.
 template <int D>
-void Events<D>::jerk(State<D>& state, double fraction, double t) {
+void Events<D>::take_impulses_of_joining(State<D>& state, double fraction, double t) {
   if (!probe(state, fraction)) return;  // the step itself tells of it
   state.v = probed_.v, state.spin = probed_.spin, state.body_spin = probed_.body_spin;
   state.work = probed_.work;  // of what is moved

@@ -113,20 +113,20 @@ class Events {
   bool joins(const When<D>& when) const;
   void search_touch(Found& found, double from, double to);
 
-  bool act(State<D>& state, const Found& found, TimeStamp at);
+  bool note_fired(State<D>& state, const Found& found, TimeStamp at);
   // an action, and for which of its condition's things
   struct Due {
     const Action* action;
     int which;
   };
-  void change(State<D>& state, const std::vector<Due>& actions, TimeStamp at);
+  void carry_out(State<D>& state, const std::vector<Due>& actions, TimeStamp at);
   void touch_with_these(const State<D>& state);
   void join_with_these(State<D>& state, TimeStamp at, std::vector<Due>& actions);
   bool joined(const State<D>& state, const When<D>& when, int pair) const;
   bool meets(const State<D>& state, std::pair<int, int> pair) const;
   void kick(State<D>& state, const State<D>& was, const Change<D>& by, double t);
   void known_broken(State<D>& state, int joint, bool broken);
-  void jerk(State<D>& state, double fraction, double t);
+  void take_impulses_of_joining(State<D>& state, double fraction, double t);
   void note_truths(State<D>& state, double from, double to);
 
   const Model<D>& model_;

@@ -2,6 +2,7 @@
 //   1. cut at the edges of the script
 //   2. integrate: free bodies in blocks, tied bodies and chains together
 //   3. collide with the walls
+//      where a contact solver has the bodies, it does what 2 and 3 say (sim/step/contact_step.h)
 //   4. at an edge, press and release, begin and end explosions
 //   5. look for trouble
 

@@ -6,8 +6,9 @@
 // its look in draw/picture/joint_look.h. All solvers, limits, motors, dry friction, breaking, messages and
 // the page of keys work from these:
 //   limit     lower <= c <= upper              a row along the free coordinate c, of one sign
-//   motor     c' = speed, |f| <= most          the same row, bounded both ways; friction: c' = 0, |f| <=
-//   friction breaks    |sum of f_i s_i| > breaks        s_i  linear part of row i: the force of its rows, N
+//   motor     c' = speed, |f| <= most          the same row, bounded both ways
+//   friction  c' = 0, |f| <= friction          likewise
+//   breaks    |sum of f_i s_i| > breaks        s_i  linear part of row i: the force of its rows, N
 //             |sum of f_i t_i| > breaks_torque t_i  its torque on a about the place of a, N m
 
 #include <algorithm>

@@ -1,11 +1,10 @@
 #pragma once
 
 // Wire: a point of a stays on a curve of b, as a bead that is threaded.
-//   C    = n_i . e,  e = x_a + r_a - c                  c   the place of the curve nearest to the point, T .
-//   e = 0 J    = [ n_i  r_a x n_i  -n_i  -(r x n_i) ]         n_i the D-1 directions across the tangent T; r
-//   from x_b J' v = n_i' . u + n_i . (w_a x (w_a x r_a) - w_b x (v_p - v_b))
-//          n_i' = w_b x n_i - (k . n_i) s' T,  s' = u . T / (1 - k . e)     k  curvature; u  velocity of the
-//          point in b's frame
+//   C    = n_i . e,  e = x_a + r_a - c             c    the curve's place nearest to the point: T . e = 0
+//   J    = [ n_i  r_a x n_i  -n_i  -(r x n_i) ]    n_i  the D-1 directions across the tangent T; r from x_b
+//   J' v = n_i' . u + n_i . (w_a x (w_a x r_a) - w_b x (v_p - v_b))
+//   n_i' = w_b x n_i - (k . n_i) s' T,  s' = u . T / (1 - k . e)     k curvature, u velocity in b's frame
 //   free: the way s along the curve, whose row is T, with T' = w_b x T + s' k; limits act on it at open ends,
 //   and friction of at most mu |f| (Coulomb). Breaks by |f|.
 // Source: Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), §3.3 (point follower).

@@ -23,16 +23,16 @@ struct ContactConstraint {
   Vec<D> drift = Vec<D>::Zero();        // m/s: what arms that turn within the substep add to it at its end
   Vec<D> half_change = Vec<D>::Zero();  // m/s: of what slides on, half of what changes in its slip
   int renewals = 0;                     // of its features, since the substep began
-  double apart = 0;                     // m/s: of that, what its row is faster than its matter was where the
-                                        // last impact of its bodies left it
-  bool after = false;                   // of a body that had an impact
-  bool rests = false;                   // there it hardly closes or parts after it
-  bool passes = false;                  // however it looks, it does not close with an impact
-  bool bounces = false;                 // an impact that is left to the iterations
-  bool closing = false;                 // slowly
-  bool slides = false;                  // and goes on to
-  bool blow = false;                    // it closes fast
-  double closes = 0;                    // when it bounces, s from the start of the substep
+  double apart = 0;      // m/s: n . (v_a + w_a x arm_a - v_b - w_b x arm_b) - d(gap)/dt, as the
+                         // last impact of its bodies left them
+  bool after = false;    // of a body that had an impact
+  bool rests = false;    // there it hardly closes or parts after it
+  bool passes = false;   // however it looks, it does not close with an impact
+  bool bounces = false;  // an impact that is left to the iterations
+  bool closing = false;  // slowly
+  bool slides = false;   // and goes on to
+  bool blow = false;     // it closes fast
+  double closes = 0;     // when it bounces, s from the start of the substep
 
   /// m/s: what is to be added to the speeds of its bodies at the end of the substep for the slip that
   /// friction is against: that at its end, or of what slides on in its middle.

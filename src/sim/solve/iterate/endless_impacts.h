@@ -14,7 +14,7 @@ namespace obscura::sim {
 inline constexpr std::size_t kMostImpacts = 200000;
 
 /// Throws NotFinite: the impacts of body `name` at time t (s), in a substep of h (s), do not end.
-[[noreturn]] inline void end_of_impacts(std::string name, double t, double h) {
+[[noreturn]] inline void throw_endless_impacts(std::string name, double t, double h) {
   Trouble trouble;
   trouble.time = t, trouble.body = std::move(name), trouble.quantity = "number of impacts";
   trouble.what = "grew past " + std::to_string(kMostImpacts) + " within a step";

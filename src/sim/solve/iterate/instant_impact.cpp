@@ -96,7 +96,7 @@ double InstantImpact<D>::attempt(double share) {
 // bounce; where none are found so either, what many sweeps come to, if it gains nothing and leaves nothing
 // that closes as fast as before.
 template <int D>
-bool InstantImpact<D>::jam() {
+bool InstantImpact<D>::solve_without_bounce() {
   constexpr int kMany = 500;
   constexpr double kLeft = 0.1;  // of the fastest that strikes
   double gained = attempt(0);
@@ -121,7 +121,7 @@ bool InstantImpact<D>::solve() {
   cone_.patience = kPatience, jams_ = false;
   rest();
   double gained = attempt(1);
-  if (!std::isfinite(gained)) return driven && jam();
+  if (!std::isfinite(gained)) return driven && solve_without_bounce();
   restitution_share(1, [&](double share) { return share == 1 ? gained : gained = attempt(share); });
   p += rested_;
   return std::isfinite(gained);

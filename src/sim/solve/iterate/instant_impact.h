@@ -52,7 +52,7 @@ class InstantImpact {
   void rest();
   double rise() const;
   double attempt(double share);
-  bool jam();
+  bool solve_without_bounce();
 
   bool jams_ = false;
   Rows b_, rested_, part_;

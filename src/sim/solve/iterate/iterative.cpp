@@ -3,7 +3,7 @@
 //   wake             what they reach; how fast they close says how many substeps the step has
 // and of each substep
 //   move free        features of what has moved; v -> v + dv, dx without contacts, with the forces of joints
-//   warm start       forces of the last step
+//   warm start       forces of the last step; in space after the impacts
 //   impacts          of those that close faster than the resting speed, each at its time
 //   iterate          v_n' >= -gap / h,  p_n >= 0,  |p_t| <= mu p_n,  between them joints exactly, J v' = 0;
 //                    then those that have not settled, and few of these exactly
@@ -179,7 +179,7 @@ void Iterative<D>::iterate(StepPart<D> part) {
     solve_jointed();
     settle_contacts(part.h);
     solve_exhausted();
-    finish_iterations(part);
+    end_round(part);
   } while (temper(part, round++));
   if (!carries_.empty() && !part.state.work.empty()) part.state.work[0] += contact_work(part);
 }

@@ -83,15 +83,16 @@ class Iterative : public ContactSolver<D> {
   virtual void iterate_contacts(int i) = 0;
   /// More of those that have not settled.
   virtual void settle_contacts(double h) = 0;
-  /// Of the iterations of a quiet heap in a substep of the fewest a second, so many one of the present ones
-  /// has: the last forces are nearer the nearer the last substep is. What hardly moves, by `rate` widths a
-  /// second, has all: its forces are to be found once.
+  /// The share that a substep has of the iterations of a quiet heap. With n times as many substeps a second
+  /// as the fewest, 1 / n: iterations begin with the forces of the last substep, which is as much nearer. 1
+  /// of what hardly moves, by `rate` widths a second: its forces are to be found once.
   double share_of_iterations(double rate) const {
     return rate < kAllButStill ? 1 : std::min(1.0, fewest_substeps_ / (substeps_ * value(model_.rate)));
   }
   /// Exactly what few of them do not settle.
   virtual void solve_exhausted() = 0;
-  virtual void finish_iterations(StepPart<D> part) = 0;
+  /// What follows each round of iterations, before temper() says whether there is another.
+  virtual void end_round(StepPart<D> part) = 0;
   /// A contact that may bear, and its bodies; below zero: what is none. `place`: by which a run cut in two
   /// has them in the same order.
   struct TouchEnds {
@@ -114,7 +115,7 @@ class Iterative : public ContactSolver<D> {
   /// The work of kinematic bodies and belts by the contacts of the substep, J.
   virtual double contact_work(StepPart<D> part) const = 0;
 
-  /// Poses and velocities at the end of the substep, into the state.
+  /// Poses and velocities at the end of the substep, into the state: what end_round() has not put there.
   virtual void place_bodies(StepPart<D> part) = 0;
   /// Pushes bodies out of overlaps, where place_bodies() has not.
   virtual void correct_overlaps(StepPart<D>) {}

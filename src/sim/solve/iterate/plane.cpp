@@ -279,7 +279,7 @@ void PlaneIterative::resolve_impacts(StepPart<D> part) {
   find_whipped();
   const int endless = impacts_.run(fast_, pairs_.all(), batches_, poses_, middle_, old_, dv_, moving_,
                                    constants_, joints_, struck_joints_);
-  if (endless >= 0) end_of_impacts(model_.bodies[endless].name, part.t, part.h);
+  if (endless >= 0) throw_endless_impacts(model_.bodies[endless].name, part.t, part.h);
   end_struck_joints(part.h, [&](int body) {
     const Motion given = impacts_.given(body);
     return Twist<D>{spin(given), velocity(given)};
@@ -292,7 +292,7 @@ int PlaneIterative::fewest_iterations() const {
   return std::clamp(kPairIterations / std::max(1, awake_pairs_), 1, kPlaneIterations);
 }
 
-// all but the last, of finish_iterations()
+// all but the last, of end_round()
 int PlaneIterative::iterations(StepPart<D> part) const {
   const int few = starts(part) ? kFirstIterations : fewest_iterations();
   if (joints_.empty()) return few - 1;
@@ -304,7 +304,7 @@ int PlaneIterative::iterations(StepPart<D> part) const {
 void PlaneIterative::iterate_contacts(int) { iterate_all(); }
 
 // one more; forces stay in the lanes until the last substep
-void PlaneIterative::finish_iterations(StepPart<D> part) {
+void PlaneIterative::end_round(StepPart<D> part) {
   const bool last = part.substep + 1 == substeps_;
   solve_joint_velocities();
   iterate_last(last ? part.state.contacts.data() : nullptr);

@@ -49,7 +49,7 @@ class PlaneIterative final : public Iterative<2> {
   void iterate_contacts(int i) override;
   void settle_contacts(double h) override;
   void solve_exhausted() override;
-  void finish_iterations(StepPart<D> part) override;
+  void end_round(StepPart<D> part) override;
   void list_touches(std::vector<TouchEnds>& touches) const override;
   TouchRows read_touch(int number) const override;
   void write_touch(int number, const TouchRows& its) override;
@@ -96,7 +96,7 @@ class PlaneIterative final : public Iterative<2> {
   void by_colour(const Act& act, int piece = kPlaneBatchPiece);
   template <class Act>
   void by_colour(std::span<const int> batches, const Act& act);
-  plane::StepConstants constants_from(int batch) const;
+  plane::SubstepConstants constants_from(int batch) const;
   void reserve_seen();
   void apply_warm_start();
   void iterate_all();
@@ -177,7 +177,7 @@ class PlaneIterative final : public Iterative<2> {
   // of an island at rest: its pairs, by lane, and batches of its own
   std::vector<int> rest_;
   std::vector<plane::ContactBatch> rest_batches_;
-  plane::StepConstants constants_;  // of the substep
+  plane::SubstepConstants constants_;  // of the substep
   plane::ActiveBodies active_bodies_;
   std::vector<int> few_bodies_, few_groups_;              // of islands of few pairs
   StruckSpeeds struck_speeds_;                            // in the step

@@ -7,7 +7,7 @@
 
 namespace obscura::sim::plane {
 
-/// HalfSides the sides (m) of a body that is one box about its centre; zero for any other.
+/// Half the sides (m) of a body that is one box about its centre; zero for any other.
 struct alignas(16) HalfSides {
   double wide = 0, high = 0;
 };

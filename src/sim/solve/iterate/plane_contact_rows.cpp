@@ -176,9 +176,10 @@ OBSCURA_INLINE V allowed_depth(const ContactBatch& g, int lane, const AllowedOve
 
 template <class V>
 OBSCURA_INLINE bool warm_start_all(ContactBatch* batches, int count, const Pose* poses, const Pose* middle,
-                                   const Motion* old, Motion* v, const StepConstants& pace, LaneList& closing,
-                                   LaneList& impacts) {
-  const V h = V{} + pace.h, creep = V{} - pace.min_closing_speed, gain = V{} + pace.gravity_dv, none{};
+                                   const Motion* old, Motion* v, const SubstepConstants& constants,
+                                   LaneList& closing, LaneList& impacts) {
+  const V h = V{} + constants.h, creep = V{} - constants.min_closing_speed, gain = V{} + constants.free_dv,
+          none{};
   const V bend = 0.5 * (h * h);
   Mask<V> deep{};
   for (int i = 0; i < count; ++i) {
@@ -192,7 +193,7 @@ OBSCURA_INLINE bool warm_start_all(ContactBatch* batches, int count, const Pose*
       const Two<V> before(g, lane, old);
       Two<V> two(g, lane, v);
       const V mu = load<V>(g.mu + lane);
-      const V sight = load<V>(g.sight + lane), allowed = allowed_depth<V>(g, lane, pace.allowed);
+      const V sight = load<V>(g.sight + lane), allowed = allowed_depth<V>(g, lane, constants.allowed);
       // What turns may come sooner than along its tangent: gap'' >= -(w_a^2 + w_b^2) r - 2 w_b v_t. Of two
       // corners of polygons others may come nearer, however these move.
       const V w2 = before.a.z * before.a.z + before.b.z * before.b.z;
@@ -319,9 +320,9 @@ inline unsigned char active_lanes(const ContactBatch& g, const unsigned char* bo
 // all pairs; or, where kSome, those of bodies that are active, and then how many these are
 template <class V, bool kLast, bool kKeep, bool kSome = false>
 OBSCURA_INLINE int iterate_all(ContactBatch* batches, int count, const Pose* poses, Motion* v,
-                               const StepConstants& pace, Contact<2>* contacts,
+                               const SubstepConstants& constants, Contact<2>* contacts,
                                ActiveBodies* active = nullptr, [[maybe_unused]] const int* listed = nullptr) {
-  const V per_h = V{} + 1 / pace.h, none{};
+  const V per_h = V{} + 1 / constants.h, none{};
   [[maybe_unused]] int pairs = 0;
   for (int number = 0; number < count; ++number) {
     ContactBatch* const g = batches + (listed ? listed[number] : number);
@@ -364,7 +365,7 @@ OBSCURA_INLINE int iterate_all(ContactBatch* batches, int count, const Pose* pos
           pick<V>(r1.gap > sight, never, smaller<V>(-r1.gap * per_h, none) - load<V>(g->turns[1] + lane));
       V target0 = open0, target1 = open1;
       if (g->struck[0] | g->struck[1]) {
-        const TargetSpeeds& least = pace.least[g - batches];
+        const TargetSpeeds& least = constants.least[g - batches];
         target0 = pick<V>(mask<V>(g->struck[0], lane), load<V>(least.n[0] + lane), open0);
         target1 = pick<V>(mask<V>(g->struck[1], lane), load<V>(least.n[1] + lane), open1);
       }
@@ -486,25 +487,26 @@ OBSCURA_WIDE void expand_wide(const ContactBatch& s, const Pose* at, Rows& out) 
   expand_one<V4>(s, at, out);
 }
 OBSCURA_WIDE bool warm_start_wide(ContactBatch* s, int n, const Pose* at, const Pose* middle,
-                                  const Motion* old, Motion* v, const StepConstants& pace, LaneList& closing,
-                                  LaneList& impacts) {
-  return warm_start_all<V4>(s, n, at, middle, old, v, pace, closing, impacts);
+                                  const Motion* old, Motion* v, const SubstepConstants& constants,
+                                  LaneList& closing, LaneList& impacts) {
+  return warm_start_all<V4>(s, n, at, middle, old, v, constants, closing, impacts);
 }
 OBSCURA_WIDE double closing_rate_wide(const ContactBatch* s, int n, const Pose* at, const Motion* v,
                                       double h) {
   return closing_rate_all<V4>(s, n, at, v, h);
 }
-OBSCURA_WIDE void iterate_wide(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
-  iterate_all<V4, false, false>(s, n, at, v, pace, nullptr);
+OBSCURA_WIDE void iterate_wide(ContactBatch* s, int n, const Pose* at, Motion* v,
+                               const SubstepConstants& constants) {
+  iterate_all<V4, false, false>(s, n, at, v, constants, nullptr);
 }
 OBSCURA_WIDE int iterate_some_wide(ContactBatch* s, const int* listed, int n, const Pose* at, Motion* v,
-                                   const StepConstants& pace, ActiveBodies& active) {
-  return iterate_all<V4, false, false, true>(s, n, at, v, pace, nullptr, &active, listed);
+                                   const SubstepConstants& constants, ActiveBodies& active) {
+  return iterate_all<V4, false, false, true>(s, n, at, v, constants, nullptr, &active, listed);
 }
 OBSCURA_WIDE void iterate_last_wide(ContactBatch* s, int n, const Pose* at, Motion* v,
-                                    const StepConstants& pace, Contact<2>* contacts) {
-  contacts ? iterate_all<V4, true, true>(s, n, at, v, pace, contacts)
-           : iterate_all<V4, true, false>(s, n, at, v, pace, nullptr);
+                                    const SubstepConstants& constants, Contact<2>* contacts) {
+  contacts ? iterate_all<V4, true, true>(s, n, at, v, constants, contacts)
+           : iterate_all<V4, true, false>(s, n, at, v, constants, nullptr);
 }
 OBSCURA_WIDE void follow_wide(ContactBatch* s, int n, const Pose* at, Motion* v, LaneImpulses* before,
                               LaneImpulses* directions, double share, const ActiveBodies& active) {
@@ -594,22 +596,22 @@ TouchRow middle_row(const ContactBatch& g, int lane, int k, const Pose& a, const
 }
 
 bool warm_start(ContactBatch* s, int n, const Pose* at, const Pose* middle, const Motion* old, Motion* v,
-                const StepConstants& pace, LaneList& closing, LaneList& impacts) {
+                const SubstepConstants& constants, LaneList& closing, LaneList& impacts) {
   closing.clear(), impacts.clear();
-  return four_lanes ? warm_start_wide(s, n, at, middle, old, v, pace, closing, impacts)
-                    : warm_start_all<V2>(s, n, at, middle, old, v, pace, closing, impacts);
+  return four_lanes ? warm_start_wide(s, n, at, middle, old, v, constants, closing, impacts)
+                    : warm_start_all<V2>(s, n, at, middle, old, v, constants, closing, impacts);
 }
 double closing_rate(const ContactBatch* s, int n, const Pose* at, const Motion* v, double h) {
   return four_lanes ? closing_rate_wide(s, n, at, v, h) : closing_rate_all<V2>(s, n, at, v, h);
 }
-void iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace) {
-  if (four_lanes) return iterate_wide(s, n, at, v, pace);
-  iterate_all<V2, false, false>(s, n, at, v, pace, nullptr);
+void iterate(ContactBatch* s, int n, const Pose* at, Motion* v, const SubstepConstants& constants) {
+  if (four_lanes) return iterate_wide(s, n, at, v, constants);
+  iterate_all<V2, false, false>(s, n, at, v, constants, nullptr);
 }
-int iterate(ContactBatch* s, const int* listed, int n, const Pose* at, Motion* v, const StepConstants& pace,
-            ActiveBodies& active) {
-  return four_lanes ? iterate_some_wide(s, listed, n, at, v, pace, active)
-                    : iterate_all<V2, false, false, true>(s, n, at, v, pace, nullptr, &active, listed);
+int iterate(ContactBatch* s, const int* listed, int n, const Pose* at, Motion* v,
+            const SubstepConstants& constants, ActiveBodies& active) {
+  return four_lanes ? iterate_some_wide(s, listed, n, at, v, constants, active)
+                    : iterate_all<V2, false, false, true>(s, n, at, v, constants, nullptr, &active, listed);
 }
 void activate_next(ActiveBodies& active) {
   active.next.back() = 0;  // walls are never active
@@ -632,11 +634,11 @@ void follow(ContactBatch* s, int n, const Pose* at, Motion* v, LaneImpulses* bef
   four_lanes ? follow_wide(s, n, at, v, before, directions, share, active)
              : follow_all<V2>(s, n, at, v, before, directions, share, active);
 }
-void iterate_last(ContactBatch* s, int n, const Pose* at, Motion* v, const StepConstants& pace,
+void iterate_last(ContactBatch* s, int n, const Pose* at, Motion* v, const SubstepConstants& constants,
                   Contact<2>* contacts) {
-  if (four_lanes) return iterate_last_wide(s, n, at, v, pace, contacts);
-  contacts ? iterate_all<V2, true, true>(s, n, at, v, pace, contacts)
-           : iterate_all<V2, true, false>(s, n, at, v, pace, nullptr);
+  if (four_lanes) return iterate_last_wide(s, n, at, v, constants, contacts);
+  contacts ? iterate_all<V2, true, true>(s, n, at, v, constants, contacts)
+           : iterate_all<V2, true, false>(s, n, at, v, constants, nullptr);
 }
 void project(const ContactBatch* s, Projection* p, int n, const Pose* at, Motion* d, double share,
              AllowedOverlap allowed) {

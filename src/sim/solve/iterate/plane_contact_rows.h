@@ -74,11 +74,11 @@ struct alignas(32) TargetSpeeds {
   double n[2][kLanes];
 };
 
-/// Constants of a step.
-struct StepConstants {
+/// Constants of a substep.
+struct SubstepConstants {
   double h = 0;                         // s
   double min_closing_speed = 0;         // m/s: slower approaches are none
-  double gravity_dv = 0;                // m/s that gravity may add in the step
+  double free_dv = 0;                   // m/s that the free motion may add in it
   double rests = 0;                     // times what forces add to a closing speed in it: no faster is a blow
   AllowedOverlap allowed;               // what is deeper is pushed apart
   const TargetSpeeds* least = nullptr;  // by group, of lanes that are struck
@@ -118,14 +118,15 @@ inline double normal_speed(const Rows& r, int k, int lane, const Motion& a, cons
 /// to `closing`, and those that close with an impact to `impacts`. True if some overlap is deeper than
 /// project() allows.
 bool warm_start(ContactBatch* batches, int count, const Pose* poses, const Pose* middle, const Motion* old,
-                Motion* v, const StepConstants& pace, LaneList& closing, LaneList& impacts);
+                Motion* v, const SubstepConstants& constants, LaneList& closing, LaneList& impacts);
 
 /// The largest closing speed of pairs that touch or may within h s, in widths of the narrower body, 1/s. Of
 /// polygons a part of the relative speed counts too, as other corners of theirs may come near.
 double closing_rate(const ContactBatch* batches, int count, const Pose* poses, const Motion* v, double h);
 
 /// One iteration: every pair once, in order. `poses`, here and below: those of the middle.
-void iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace);
+void iterate(ContactBatch* batches, int count, const Pose* poses, Motion* v,
+             const SubstepConstants& constants);
 /// Bodies whose pairs need more iterations: those of a pair whose last correction exceeded `settled` widths a
 /// second. Bodies on joints are excluded by kNever.
 struct ActiveBodies {
@@ -140,7 +141,7 @@ struct ActiveBodies {
 /// One iteration of the pairs of such bodies alone, in `count` groups, or in so many of the numbers `listed`.
 /// Notes what the next is to look at; returns the number of pairs.
 int iterate(ContactBatch* batches, const int* listed, int count, const Pose* poses, Motion* v,
-            const StepConstants& pace, ActiveBodies& active);
+            const SubstepConstants& constants, ActiveBodies& active);
 /// After one over all: the bodies that it has noted are active.
 void activate_next(ActiveBodies& active);
 /// Impulses of four pairs, as ContactBatch has them.
@@ -154,8 +155,8 @@ void follow(ContactBatch* batches, int count, const Pose* poses, Motion* v, Lane
             LaneImpulses* directions, double share, const ActiveBodies& active);
 
 /// The last iteration of a substep: stores forces in the lanes and, unless null, in `contacts`.
-void iterate_last(ContactBatch* batches, int count, const Pose* poses, Motion* v, const StepConstants& pace,
-                  Contact<2>* contacts);
+void iterate_last(ContactBatch* batches, int count, const Pose* poses, Motion* v,
+                  const SubstepConstants& constants, Contact<2>* contacts);
 
 /// One iteration over positions at `poses`, which takes away `share` of the overlap beyond the allowed one.
 /// Friction holds here too; without it the correction would let piles slide apart.

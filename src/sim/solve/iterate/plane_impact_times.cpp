@@ -30,7 +30,7 @@ void Impacts::move(int body, double when, const Step& step, Pose& pose, Motion& 
   pose = there ? pose_[body] : step.poses[body], v = now_[body];
   if (there) return;
   const Motion way = way_at(body, when, step), &gain = step.dv[body];
-  const double share = (when - std::max(0.0, when_[body])) / step.pace.h;
+  const double share = (when - std::max(0.0, when_[body])) / step.constants.h;
   v.x += share * gain.x, v.y += share * gain.y, v.w += share * gain.w;
   pose.x += way.x, pose.y += way.y;
   if (way.w == 0) return;
@@ -42,7 +42,7 @@ void Impacts::move(int body, double when, const Step& step, Pose& pose, Motion& 
 // from where the step begins
 Motion Impacts::way_at(int body, double when, const Step& step) const {
   const Motion &v = now_[body], &gain = step.dv[body];
-  const double time = when - std::max(0.0, when_[body]), half = 0.5 * (time / step.pace.h);
+  const double time = when - std::max(0.0, when_[body]), half = 0.5 * (time / step.constants.h);
   Motion way{time * (v.x + half * gain.x), time * (v.y + half * gain.y), time * (v.w + half * gain.w)};
   if (when_[body] >= 0) way.x += way_[body].x, way.y += way_[body].y, way.w += way_[body].w;
   return way;
@@ -77,9 +77,10 @@ double Impacts::closing_guess(const Pair& pair, int k, const ContactBatch& g, co
   if (gap > g.sight[lane]) return kNeverCloses;
   if (!(vn < slow)) {
     // it may yet, by forces: gap + vn t + dvn t^2 / 2 h = 0
-    const double gain = gains(dvn, pair) * (1 - at.when / step.pace.h);
+    const double gain = gains(dvn, pair) * (1 - at.when / step.constants.h);
     if (gap <= 0 || !(vn + gain < slow)) return kNeverCloses;
-    return at.when + (vn + std::sqrt(vn * vn - 2 * dvn / step.pace.h * left)) / -(dvn / step.pace.h);
+    return at.when +
+           (vn + std::sqrt(vn * vn - 2 * dvn / step.constants.h * left)) / -(dvn / step.constants.h);
   }
   // two corners: |l n + v t| = radius, if they do not pass
   if (g.corners[k] >> lane & 1) {
@@ -88,7 +89,7 @@ double Impacts::closing_guess(const Pair& pair, int k, const ContactBatch& g, co
     const double under = p * p - (vn * vn + vt * vt) * q;
     if (under > 0) return at.when + q / (std::sqrt(under) - p);
   }
-  return at.when + left / -std::min(vn, vn - 0.5 * dvn * left / (step.pace.h * vn));
+  return at.when + left / -std::min(vn, vn - 0.5 * dvn * left / (step.constants.h * vn));
 }
 
 // the same where its bodies stand by then
@@ -100,13 +101,13 @@ double Impacts::closing_time(const Pair& pair, int k, const ContactBatch& g, con
   const double dvn = normal_speed(start.rows[k], step.dv[g.a[lane]], step.dv[g.b[lane]]);
   if (guess == kNeverCloses) {
     // what turns may begin to close on the way
-    const double time = step.pace.h - start.when, vn = normal_speed(start.rows[k], start.a, start.b);
+    const double time = step.constants.h - start.when, vn = normal_speed(start.rows[k], start.a, start.b);
     const double nearer = 0.5 * time * time * most_bend(pair, start.a, start.b);
     if (start.rows[k].gap > g.sight[lane] ||
-        start.rows[k].gap + time * (vn + 0.5 * time / step.pace.h * dvn) >= nearer)
+        start.rows[k].gap + time * (vn + 0.5 * time / step.constants.h * dvn) >= nearer)
       return kNeverCloses;
   }
-  return sim::closing_time(start.when, guess, step.pace.h,
+  return sim::closing_time(start.when, guess, step.constants.h,
                            strike_speed(pair, g.impact_speed[lane], dvn, step), [&](double when) {
                              const PlacedPair at = placed_at(pair, when, g, step);
                              return GapInTime{at.rows[k].gap, normal_speed(at.rows[k], at.a, at.b)};
@@ -124,7 +125,7 @@ double Impacts::most_bend(const Pair& pair, const Motion& va, const Motion& vb) 
 // Whether a pair may meet with an impact in what is left of the step, by its rows as it stands: most do not.
 bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Step& step) const {
   const int lane = pair.slot % kLanes, a = pair.a, b = pair.b >= 0 ? pair.b : int(now_.size()) - 1;
-  const double from = std::max({0.0, when_[a], when_[b]}), time = step.pace.h - from;
+  const double from = std::max({0.0, when_[a], when_[b]}), time = step.constants.h - from;
   Pose pose_a = step.poses[a], pose_b = step.poses[b];
   Motion va = now_[a], vb = now_[b];
   if (from > 0) move(a, from, step, pose_a, va), move(b, from, step, pose_b, vb);
@@ -136,13 +137,13 @@ bool Impacts::may_meet(const Pair& pair, const ContactBatch& g, const Step& step
   for (int k = 0; k < pair.touches; ++k) {
     const TouchRow r = row(g, lane, k, pose_a, pose_b);
     const double vn = normal_speed(r, va, vb);
-    if (other_corners(g, k, lane) && r.gap < time * (fastest() + step.pace.gravity_dv)) return true;
+    if (other_corners(g, k, lane) && r.gap < time * (fastest() + step.constants.free_dv)) return true;
     const double dvn = normal_speed(r, step.dv[a], step.dv[b]);
-    const double ends = vn + time / step.pace.h * gains(dvn, pair);
+    const double ends = vn + time / step.constants.h * gains(dvn, pair);
     const double slow = strike_speed(pair, g.impact_speed[lane], dvn, step);
     if (!(ends - time * bend < slow)) continue;
     // what it may come nearer than by these rows and velocities
-    const double left = r.gap + time * (vn + 0.5 * time / step.pace.h * dvn);
+    const double left = r.gap + time * (vn + 0.5 * time / step.constants.h * dvn);
     if (left >= 0 && left >= 0.5 * time * time * bend) continue;
     if (r.gap <= g.sight[lane]) return true;
   }
@@ -204,7 +205,7 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& 
   const auto found = [&](const ContactBatch& by) {
     // round things have no other features
     if (g.calm[lane] < 1e300) {
-      find_features(std::min(when, step.pace.h));
+      find_features(std::min(when, step.constants.h));
       if (outdated(pair, words, by)) {
         if (&by != &fresh_) copy_lane(by, lane, fresh_, lane);
         if (when == kNeverCloses || !still_nearest(pair, words, by, which)) return false;
@@ -232,11 +233,11 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& 
     return least < kNowhere / 2 ? least : std::numeric_limits<double>::min();
   };
   double apart = -1;  // s: when it was last
-  for (double time = from; time <= step.pace.h;) {
+  for (double time = from; time <= step.constants.h;) {
     find_features(time), place_renewed(time);
     if (gap() <= 0 && apart >= 0) {
       // on the way
-      for (double low = apart; time - low > kInTime * step.pace.h;) {
+      for (double low = apart; time - low > kInTime * step.constants.h;) {
         const double mid = 0.5 * (low + time);
         find_features(mid), place_renewed(mid);
         (gap() > 0 ? low : time) = mid;
@@ -247,7 +248,7 @@ bool Impacts::find_meeting(const Pair& pair, const ContactBatch& g, PlacedPair& 
     if (when == time) return true;
     if (found(fresh_)) return when < kNeverCloses;
     apart = gap() > 0 ? time : -1;
-    time += std::max(kForward * step.pace.h, gap() / fastest);
+    time += std::max(kForward * step.constants.h, gap() / fastest);
   }
   return false;
 }

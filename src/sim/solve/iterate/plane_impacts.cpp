@@ -15,6 +15,7 @@
 #include "sim/solve/iterate/closing_time.h"
 #include "sim/solve/iterate/endless_impacts.h"
 #include "sim/solve/iterate/plane_pair_impact.h"
+#include "sim/solve/iterate/substeps.h"
 
 namespace obscura::sim::plane {
 
@@ -22,7 +23,6 @@ namespace {
 
 constexpr std::size_t kPairsAhead = 4;      // pairs that are asked for, as they are far apart in memory
 constexpr std::size_t kMostAtOnce = 30000;  // impacts of an instant, of what bounces less than wholly
-constexpr double kNoTarget = -1e9;          // m/s: of a speed that nothing aims at
 
 // of a body's fastest point, at most, m/s
 double swiftness(const Motion& v, double radius) {
@@ -49,7 +49,7 @@ void Impacts::list_pairs(const std::vector<Pair>& pairs, const std::vector<Motio
       if (body >= 0 && v[body].im > 0) act(body);
     }
   });
-  waiting_.assign(pairs.size(), 0), impacts_of_.assign(pairs.size(), 0);
+  waiting_.assign(pairs.size(), 0), impacts_of_.assign(pairs.size(), 0), met_.assign(pairs.size(), Met::none);
   queue_.reserve(pairs.size()), passing_.reserve(pairs.size());
 }
 
@@ -75,7 +75,7 @@ void Impacts::reach(int body, double when, const Step& step) {
     bodies_.push_back(body);
     first_[body] = when, way_[body] = dv_impacts_[body] = {};
   }
-  const double time = when - std::max(0.0, when_[body]), share = time / step.pace.h, half = 0.5 * share;
+  const double time = when - std::max(0.0, when_[body]), share = time / step.constants.h, half = 0.5 * share;
   const Motion& gain = step.dv[body];
   Motion& way = way_[body];
   way.x += time * (v.x + half * gain.x), way.y += time * (v.y + half * gain.y);
@@ -169,7 +169,7 @@ bool Impacts::predict(int i, Impact& impact, const std::vector<ContactBatch>& ba
     // what ends faster than it goes on the way: its row sees the end alone; and rows that turn see a way that
     // is not gone
     const double turns = pair.material.elasticity > kBounces
-                             ? step.pace.h * (std::fabs(now_[a].w) + std::fabs(now_[b].w)) * passes
+                             ? step.constants.h * (std::fabs(now_[a].w) + std::fabs(now_[b].w)) * passes
                              : 0;
     if (changes + turns >= pair.impact_speed) passing_.push_back(i);
     return false;
@@ -265,7 +265,7 @@ bool Impacts::parts_at(const Pair& pair, double when, const ContactBatch& g, con
   const PlacedPair at = placed_by_nearest(pair, when, g, step);
   for (int k = 0; k < pair.touches; ++k) {
     const double vn = normal_speed(at.rows[k], at.a, at.b);
-    if (!(vn > 0) && !(at.rows[k].gap + (step.pace.h - when) * vn > 0)) return false;
+    if (!(vn > 0) && !(at.rows[k].gap + (step.constants.h - when) * vn > 0)) return false;
   }
   return true;
 }
@@ -285,16 +285,16 @@ bool Impacts::apart_at(const Pair& pair, double when, const ContactBatch& g, con
 // most zero.
 void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step& step) {
   if (least_.size() < batches.size()) least_.resize(batches.size());
-  for (const Impact& impact : impacts_) waiting_[impact.pair] = impact.renewed ? 2 : 1;
+  for (const Impact& impact : impacts_) met_[impact.pair] = impact.renewed ? Met::renewed : Met::struck;
   const int room = int(now_.size()) - 1;
   const auto leave = [&](int i) {
     const Pair& pair = step.pairs[i];
     const int group = pair.slot / kLanes, lane = pair.slot % kLanes, b = pair.b >= 0 ? pair.b : room;
     ContactBatch& g = batches[group];
     const Rows& r = rows(group, batches, step.poses);
-    const char met = waiting_[i];
+    const Met met = met_[i];
     double v[2], slow[2];
-    bool any = met != 0;
+    bool any = met != Met::none;
     const double last = std::max({0.0, when_[pair.a], when_[b]});
     const Motion va = motion_at(pair.a, last, step), vb = motion_at(b, last, step);
     for (int k = 0; k < pair.touches; ++k) {
@@ -302,8 +302,8 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
       const double dvn = normal_speed(r, k, lane, step.dv[pair.a], step.dv[b]),
                    ends = v[k] + gains(dvn, pair);
       slow[k] = strike_speed(pair, g.impact_speed[lane], dvn, step);
-      any = any || (v[k] < 0 && r.gap[k][lane] + step.pace.h * v[k] < 0) ||
-            (ends < slow[k] && r.gap[k][lane] + step.pace.h * ends < 0);
+      any = any || (v[k] < 0 && r.gap[k][lane] + step.constants.h * v[k] < 0) ||
+            (ends < slow[k] && r.gap[k][lane] + step.constants.h * ends < 0);
     }
     const double fast = swiftness(va, bounding_radius_[pair.a]) + swiftness(vb, bounding_radius_[b]);
     const bool struck = strikes(pair.a, b, va, vb, step);
@@ -312,10 +312,10 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
     };
     // what bounces and has been found not to meet is not held by rows that turn into each other on the way
     const auto would_push = [&](int k) {
-      return r.gap[k][lane] + step.pace.h * std::min(v[k], in_middle(k)) < 0;
+      return r.gap[k][lane] + step.constants.h * std::min(v[k], in_middle(k)) < 0;
     };
-    if (met == 0 && pair.material.elasticity > kBounces &&
-        (would_push(0) || (pair.touches > 1 && would_push(1))) && apart_at(pair, step.pace.h, g, step)) {
+    if (met == Met::none && pair.material.elasticity > kBounces &&
+        (would_push(0) || (pair.touches > 1 && would_push(1))) && apart_at(pair, step.constants.h, g, step)) {
       for (int k = 0; k < pair.touches; ++k) {
         g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
         least_[group].n[k][lane] = kNoTarget;
@@ -333,9 +333,10 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
     }
     // what bounces, and parts by the features that are nearest then is not held by those that it had: where
     // corners pass each other they say nothing
-    const bool parts = met == 2 && pair.material.elasticity > kBounces && parts_at(pair, last, g, step);
+    const bool parts =
+        met == Met::renewed && pair.material.elasticity > kBounces && parts_at(pair, last, g, step);
     const PlacedPair at = placed_at(pair, last, g, step);
-    const double left = step.pace.h - at.when;
+    const double left = step.constants.h - at.when;
     for (int k = 0; k < pair.touches; ++k) {
       const double gap = at.rows[k].gap, vn = normal_speed(at.rows[k], at.a, at.b);
       double& least = least_[group].n[k][lane];
@@ -352,15 +353,16 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
       least = !goes_on ? std::min(middle - vn, std::max(v[k] - vn, 0.0)) : v[k] - middle;
       if (goes_on && !(g.p[k][lane] > 0)) least = std::min(least, 0.0);
       // nor may rows that are others push apart what only they part
-      if (met == 2 || vn < 0) least = std::min(least, 0.0);
-      least = target_after_impacts(least, {gap, vn}, kTogether * g.far[lane], slow[k], left, step.pace.h);
+      if (met == Met::renewed || vn < 0) least = std::min(least, 0.0);
+      least =
+          target_after_impacts(least, {gap, vn}, kTogether * g.far[lane], slow[k], left, step.constants.h);
     }
   };
   for (const int i : passing_) leave(i);
   for (const int body : bodies_) {
     for (const int i : around(body)) leave(i);
   }
-  for (const Impact& impact : impacts_) waiting_[impact.pair] = 0;
+  for (const Impact& impact : impacts_) met_[impact.pair] = Met::none;
 }
 
 // whether impacts have changed by much how fast two pass each other
@@ -390,7 +392,7 @@ void Impacts::had_impact(const Impact& impact, const Step& step) {
 int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
                  const std::vector<Pose>& poses, const std::vector<Pose>& middle,
                  const std::vector<Motion>& old, const std::vector<Motion>& dv, std::vector<Motion>& v,
-                 const StepConstants& pace, JointSolver<2>& joints, JointSolver<2>& struck_joints) {
+                 const SubstepConstants& constants, JointSolver<2>& joints, JointSolver<2>& struck_joints) {
   for (const int body : bodies_) when_[body] = first_[body] = -1, rounds_[body] = 0;
   for (const int body : crowd_) crowded_[body] = 0;
   crowd_.clear(), instants_ = 0, spent_ = 0;
@@ -404,7 +406,7 @@ int Impacts::run(const LaneList& found, const std::vector<Pair>& pairs, std::vec
   std::copy(old.begin(), old.end(), now_.begin());
   known_.assign(batches.size(), -1);
 
-  const Step step{pairs, poses, middle, old, dv, pace, joints, struck_joints};
+  const Step step{pairs, poses, middle, old, dv, constants, joints, struck_joints};
   for (const int lane : found) look_at(batches[lane / kLanes].pair[lane % kLanes]);
   // which lane a pair has hangs on the steps before; the order of pairs does not
   std::sort(queue_.begin(), queue_.end());

@@ -35,7 +35,7 @@ class Impacts {
   /// Returns a body whose impacts do not end (sim/solve/iterate/endless_impacts.h), or -1.
   int run(const LaneList& found, const std::vector<Pair>& pairs, std::vector<ContactBatch>& batches,
           const std::vector<Pose>& poses, const std::vector<Pose>& middle, const std::vector<Motion>& old,
-          const std::vector<Motion>& dv, std::vector<Motion>& v, const StepConstants& pace,
+          const std::vector<Motion>& dv, std::vector<Motion>& v, const SubstepConstants& constants,
           JointSolver<2>& joints, JointSolver<2>& struck_joints);
 
   /// The work of kinematic bodies and belts by the impacts of the last run, J.
@@ -93,6 +93,8 @@ class Impacts {
     Motion a, b;
     TouchRow rows[2];
   };
+  // whether a pair has had an impact, and by other features than those of the lane
+  enum class Met : unsigned char { none, struck, renewed };
   // an impact of several pairs in one instant, and how the bodies of each move before it
   struct Meeting {
     Impact impact;
@@ -109,7 +111,7 @@ class Impacts {
     const std::vector<Pair>& pairs;
     const std::vector<Pose>&poses, &middle;
     const std::vector<Motion>&old, &dv;
-    const StepConstants& pace;
+    const SubstepConstants& constants;
     JointSolver<2>&joints, &struck_joints;
   };
   void reach(int body, double when, const Step& step);
@@ -175,7 +177,7 @@ class Impacts {
   double strike_speed(const Pair& pair, double impact_speed, double dvn, const Step& step) const {
     const auto tied = [&](int body) { return body >= 0 && step.joints.has(body); };
     if (!step.joints.empty() && (tied(pair.a) || tied(pair.b))) return impact_speed;
-    return std::min(impact_speed, step.pace.rests * dvn);
+    return std::min(impact_speed, step.constants.rests * dvn);
   }
   // what forces give to a closing speed in the substep, as far as it is more than gravity does
   static double gains(double dvn, const Pair& pair) { return dvn < -pair.impact_speed ? dvn : 0; }
@@ -183,7 +185,7 @@ class Impacts {
   Motion motion_at(int body, double when, const Step& step) const {
     Motion v = now_[body];
     if (v.im > 0) return v;
-    const double share = when / step.pace.h;
+    const double share = when / step.constants.h;
     const Motion& gain = step.dv[body];
     v.x += share * gain.x, v.y += share * gain.y, v.w += share * gain.w;
     return v;
@@ -211,6 +213,7 @@ class Impacts {
   std::vector<int> queue_;        // pairs to be looked at, as one of their bodies just had an impact
   ImpactQueue due_;               // numbers of predicted_
   std::vector<char> waiting_;     // of pairs: in queue_
+  std::vector<Met> met_;          // of pairs, as they are left to the iterations
   std::vector<char> impacts_of_;  // of pairs: whether they had one
   std::vector<Impact> predicted_;
   std::vector<Impact> impacts_;  // in the order of time

@@ -143,7 +143,7 @@ void Impacts::gather_ends(double when, const Step& step) {
     place_joints(pair, when, step);
     for (const int body : {pair.a, pair.b}) {
       if (body < 0) continue;
-      const double left = 1 - when / step.pace.h;
+      const double left = 1 - when / step.constants.h;
       ends_.add(step.joints, step.struck_joints, body, left, [&](int member, Vec<2>& v, AngularVec<2>& w) {
         if (now_[member].im == 0) return false;
         Pose ignored;
@@ -154,7 +154,7 @@ void Impacts::gather_ends(double when, const Step& step) {
       });
     }
   }
-  ends_.limit();
+  ends_.drop_if_too_many();
 }
 
 // the pair of a touch of an instant, and how its rows push

@@ -44,8 +44,8 @@ void PlaneIterative::by_colour(std::span<const int> batches, const Act& act) {
   }
 }
 
-plane::StepConstants PlaneIterative::constants_from(int batch) const {
-  plane::StepConstants its = constants_;
+plane::SubstepConstants PlaneIterative::constants_from(int batch) const {
+  plane::SubstepConstants its = constants_;
   if (its.least) its.least += batch;
   return its;
 }

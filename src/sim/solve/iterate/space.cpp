@@ -187,7 +187,7 @@ int SpaceIterative::iterations(StepPart<D> part) const {
   return std::clamp(kTouchIterations / std::max(1, int(touches_.size())), kFewestIterations, kMostIterations);
 }
 
-void SpaceIterative::finish_iterations(StepPart<D> part) {
+void SpaceIterative::end_round(StepPart<D> part) {
   shed_gains();
   place(part.state, part.h);
 }
@@ -286,7 +286,7 @@ void SpaceIterative::order_blows(double h) {
       ContactConstraint& touch = touches_[i];
       if (!touch.blow) continue;
       later_blows_.push_back({i, after});
-      touch.least = -1e9, touch.bounces = touch.closing = false;
+      touch.least = kNoTarget, touch.bounces = touch.closing = false;
     }
   });
 }

@@ -52,7 +52,7 @@ class SpaceIterative final : public Iterative<3> {
   void iterate_contacts(int i) override { batches_.iterate(moving_, i % 2 != 0); }
   void settle_contacts(double h) override;
   void solve_exhausted() override;
-  void finish_iterations(StepPart<D> part) override;
+  void end_round(StepPart<D> part) override;
   void list_touches(std::vector<TouchEnds>& touches) const override;
   TouchRows read_touch(int number) const override;
   void write_touch(int number, const TouchRows& its) override;

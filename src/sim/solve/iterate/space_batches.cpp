@@ -100,8 +100,9 @@ OBSCURA_INLINE void add_turning(const WideBody<V>& body, const Wide3<V>& r, Symm
 }
 
 // What the contacts answer, J M^-1 J' = K: along n, across it at most, and across it by an impulse along n.
-//   askew = K n - n (n . K n)        of the block across n:  trace = tr K - n . K n,  determinant = n .
-//   adj(K) n
+//   askew = K n - n (n . K n)
+// Of the block across n:
+//   trace = tr K - n . K n,  determinant = n . adj(K) n
 template <class V>
 OBSCURA_INLINE void respond_all(std::span<const SpaceBatches::Batch> batches,
                                 std::vector<SpaceBatches::Row>& rows, const double* bodies) {

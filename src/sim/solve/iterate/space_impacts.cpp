@@ -15,6 +15,7 @@
 #include "sim/solve/iterate/endless_impacts.h"
 #include "sim/solve/iterate/pieces.h"
 #include "sim/solve/iterate/space.h"
+#include "sim/solve/iterate/substeps.h"
 
 namespace obscura::sim {
 
@@ -136,7 +137,7 @@ void SpaceIterative::gather_ends(double t, double h) {
                        });
     }
   }
-  struck_ends_.limit();
+  struck_ends_.drop_if_too_many();
 }
 
 // the rows of what meets at a time, n and across it of each gap, their M^-1 J', K and J v
@@ -300,7 +301,8 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
     const ImpactQueue::Due due = due_.pop();
     if (due.rounds != rounds(due.number)) continue;
     if (crowded_[touches_[due.number].a] || crowded_[touches_[due.number].b]) continue;
-    if (++looked_at > kMostImpacts) end_of_impacts(model_.bodies[touches_[due.number].a].name, step.t, h);
+    if (++looked_at > kMostImpacts)
+      throw_endless_impacts(model_.bodies[touches_[due.number].a].name, step.t, h);
     if (!has_nearest_features(due, h)) continue;
     if (!gather_impact(due.number, due.when, h)) {
       // so many touch there that what meets them later is left to the iterations, too
@@ -348,7 +350,8 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
         target_after_impacts(touch.apart, {at.now.value, at.speed}, kTogether * bounding_radius_[touch.a],
                              -restitution_threshold_, left, h);
     // where other features have met, those that it had say nothing of what bounces and parts by these
-    if (touch.renewals > 0 && touch.bounce > kBounces && parts_at(touch.a, touch.b, t, h)) touch.least = -1e9;
+    if (touch.renewals > 0 && touch.bounce > kBounces && parts_at(touch.a, touch.b, t, h))
+      touch.least = kNoTarget;
   }
   end_struck_joints(h, [&](int body) {
     Twist<D> given;

@@ -38,7 +38,7 @@ class StruckEnds {
     for (const Response& end : reached) ends_.push_back({&end, struck.row_speed(end)});
   }
   /// More than an impact takes are none.
-  void limit() {
+  void drop_if_too_many() {
     if (int(ends_.size()) > InstantImpact<D>::kMostEnds) ends_.clear();
   }
   int count() const { return int(ends_.size()); }

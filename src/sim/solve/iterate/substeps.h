@@ -10,8 +10,9 @@
 #include "sim/model/model.h"
 #include "sim/shape/shape.h"
 
-// Constants and rules of the iterative solvers, the same in the plane and in space: how they push bodies out
-// of each other, how many substeps they take, and when iterations end. Bodies are pushed apart at a rate in
+// Constants and rules of the iterative solvers: how they push bodies out of each other, how many substeps
+// they take, what an impact is, and when iterations end. They are the same in the plane and in space, but for
+// ruling_rate(), of space, and settled_rate(), of the plane. Bodies are pushed apart at a rate in
 // time, whatever the length of the step, and down to an allowed overlap.
 
 namespace obscura::sim {
@@ -97,6 +98,9 @@ inline constexpr double kAllButStill = 0.1;
 /// Islands of so many contacts at most are solved exactly where iterations do not settle them, by so many
 /// linear systems at most.
 inline constexpr int kFewSolved = 24, kSolvedSystems = 20;
+
+/// m/s: the least normal speed of a contact that nothing aims at.
+inline constexpr double kNoTarget = -1e9;
 
 /// Tolerance of the time of an impact, of a substep; Newton's next correction would be of the order of its
 /// square.

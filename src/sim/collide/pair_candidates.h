@@ -11,8 +11,8 @@ namespace obscura::sim {
 /// The contact candidates of body a with body b, or with the wall -1 - b if that is negative, whose gaps are
 /// below `margin` (m), where a state has both.
 template <int D>
-std::vector<ContactCandidate<D>> near_pair(const Model<D>& model, const State<D>& state, int a, int b,
-                                           double margin) {
+std::vector<ContactCandidate<D>> pair_candidates(const Model<D>& model, const State<D>& state, int a, int b,
+                                                 double margin) {
   std::vector<ContactCandidate<D>> near;
   const Shape<D>& shape = model.bodies[std::size_t(a)].shape;
   const BodyMotion<D> at = body_motion(state, a);
