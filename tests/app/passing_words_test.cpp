@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <map>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "app/run/ahead.h"
 #include "app/run/compared.h"
+#include "app/run/outside.h"
 #include "app/run/simulation.h"
 #include "draw/compose/annotations.h"
 #include "draw/picture/type.h"
@@ -14,6 +16,9 @@
 
 namespace obscura::app {
 namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
 
 std::string words_of(const draw::Text& text) {
   std::string all;
@@ -191,6 +196,40 @@ place = "below"
                                                         "wide.toml"));
   EXPECT_EQ(words.looked, 2 * 60);
   EXPECT_EQ(words.covered, 0);
+}
+
+const char* const kAFilmOfALabel = R"(duration = 0.1
+[room]
+size = [4, 3]
+[[ball]]
+name = "a"
+radius = 0.3
+position = [1, 1]
+[[film.label]]
+at = [9, 9]
+text = "far away"
+[[film.label]]
+at = [1, 2]
+text = "here"
+)";
+
+/// A label or point at a place that no picture shows is told of, by check as by render.
+TEST(PassingWords, OutsideOfThePictureAreTold) {
+  const scene::Scene scene = scene::parse(kAFilmOfALabel, "a.toml");
+  EXPECT_THAT(never_shown(scene),
+              ElementsAre("the label 'far away' is never shown: its place is outside of the picture"));
+  testing::internal::CaptureStderr();
+  app::ahead(scene);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "a.toml: note: the label 'far away' is never shown: its place is outside of the picture\n");
+  // a camera that goes there shows it
+  const std::string camera = kAFilmOfALabel + std::string("[camera]\n");
+  EXPECT_THAT(never_shown(scene::parse(camera + "center = [9, 8]\nwidth = 4\n", "a.toml")),
+              ElementsAre("the label 'here' is never shown: its place is outside of the picture"));
+  EXPECT_THAT(never_shown(scene::parse(camera + "keys = [{ time = 0, center = [1, 1], width = 4 }, "
+                                                "{ time = 0.1, center = [9, 8], width = 4 }]\n",
+                                       "a.toml")),
+              IsEmpty());
 }
 
 /// Of runs over each other words keep off the bodies of all.

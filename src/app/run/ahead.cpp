@@ -10,6 +10,7 @@
 #include "app/console/interrupt.h"
 #include "app/console/say.h"
 #include "app/run/compared.h"
+#include "app/run/outside.h"
 #include "app/run/plot_points.h"
 #include "draw/compose/annotations.h"
 #include "draw/page/measure.h"
@@ -246,6 +247,14 @@ void tell_never_seen(const scene::Scene& scene,
   }
 }
 
+// Words at places that no camera comes to. Where nothing is known of the run, as it begins.
+void tell_never_shown(const scene::Scene& scene, const Ahead& page,
+                      const std::vector<sim::Snapshot>& moments) {
+  const std::vector<std::string> all =
+      moments.empty() ? never_shown(scene) : never_shown(scene, depictor(scene, page), moments);
+  for (const std::string& each : all) say(stderr, "{}: note: {}\n", scene.file, each);
+}
+
 std::shared_ptr<const draw::Annotations> annotations(const scene::Scene& scene, const Ahead& page,
                                                      draw::RunAhead found, const draw::Scales& given) {
   return std::make_shared<const draw::Annotations>(scene.film.marks, depictor(scene, page), std::move(found),
@@ -269,6 +278,7 @@ void annotate(const Ahead& page, std::vector<Watched>& watched, std::vector<Ahea
         common.*member = own.*member;
   }
   std::vector<std::shared_ptr<const draw::Annotations>> made;
+  if (!runs.empty()) tell_never_shown(runs.front().scene, page, watched.front().marks.moments);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (runs[i].scene.film.marks.empty()) continue;
     runs[i].annotations = annotations(runs[i].scene, page, std::move(watched[i].marks), common);
@@ -340,6 +350,7 @@ Ahead ahead(const scene::Scene& scene) {
   } else if (!scene.film.marks.empty()) {
     if (watched.empty()) watched.emplace_back();
     const draw::Scales given = given_scales(scene, watched.front().cast);
+    tell_never_shown(scene, all, watched.front().marks.moments);
     all.annotations = annotations(scene, all, std::move(watched.front().marks), given);
     tell_never_seen(scene, {all.annotations});
   }
