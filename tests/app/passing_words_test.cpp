@@ -20,7 +20,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-std::string words_of(const draw::Text& text) {
+std::string spans_of_text(const draw::Text& text) {
   std::string all;
   for (const draw::Span& span : text.spans) all += span.text;
   return all;
@@ -94,7 +94,8 @@ label = "T"
   for_each_frame(scene, [&](const draw::List& list, const draw::Projection&, const sim::Snapshot& now) {
     std::map<std::string, int> seen{{"Bob", 0}, {"Cat", 0}};
     for (const draw::Text& text : list.texts)
-      if (const auto it = seen.find(words_of(text)); it != seen.end()) it->second = text.spans[0].color.a;
+      if (const auto it = seen.find(spans_of_text(text)); it != seen.end())
+        it->second = text.spans[0].color.a;
     for (const auto& [words, strength] : seen)
       EXPECT_LE(std::abs(strength - before[words]), kMost) << words << " at " << now.time;
     before = seen, ++frames;
