@@ -25,14 +25,19 @@ std::string owner_text(const std::string& owner) {
   return it->form == Form::tables ? "[[" + owner + "]]" : "[" + owner + "]";
 }
 
-// other tables with a key of this name; `table` tells whether a table is meant
+// other tables with a key of this name; `table` tells whether a table is meant, which is looked for first
 std::string elsewhere(std::string_view last, bool table) {
-  for (const Key& each : keys())
-    if (each.last() == last && each.owner().find('.') == std::string_view::npos &&
-        (table || !(each.owner().empty() && (each.form == Form::tables || each.form == Form::table))))
-      return each.owner().empty() ? "it belongs at the top, before the first [table]"
-                                  : "it belongs in " + owner_text(std::string(each.owner()));
-  return "";
+  const Key* found = nullptr;
+  for (const Key& each : keys()) {
+    const bool is_table = each.form == Form::tables || each.form == Form::table;
+    if (each.last() != last || each.owner().find('.') != std::string_view::npos) continue;
+    if (!table && each.owner().empty() && is_table) continue;
+    if (!found || (table && is_table && found->form != Form::tables && found->form != Form::table))
+      found = &each;
+  }
+  if (!found) return "";
+  return found->owner().empty() ? "it belongs at the top, before the first [table]"
+                                : "it belongs in " + owner_text(std::string(found->owner()));
 }
 
 // a kind of one of the tables, where it is written as a table of its own: "[[joint]], type = \"rod\""

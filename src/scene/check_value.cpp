@@ -412,8 +412,8 @@ class Values : private Reporter {
     // "ball" may be the name of a [[ball]], and of anything else
     if (std::any_of(taken.begin(), taken.end(),
                     [&](const Key* it) { return it->path == text && it->form != Form::tables; }))
-      return wrong(
-          node, fmt::format("'{}': {} is a word of the language; choose another", key.last(), in_quotes(text)));
+      return wrong(node, fmt::format("'{}': {} is a word of the language; choose another", key.last(),
+                                     in_quotes(text)));
     return true;
   }
 
@@ -482,6 +482,11 @@ class Values : private Reporter {
   }
 
   bool choices(const Node& node, const Key& key) {
+    // one word without its list: right or wrong, it is told of alone
+    if (node.is_text())
+      return word(node, key) &&
+             instead(node, key, "a list",
+                     fmt::format("{0}; write it in brackets: [\"{1}\"]", described(node), node.text()));
     if (!node.is_list()) return mistyped(node, key);
     return each(node.list(),
                 [&](const Node& it) { return it.is_text() ? word(it, key) : mistyped(it, key, "a string"); });

@@ -27,13 +27,14 @@ class Diagnostics {
   /// "scenes/a.toml:12:8", "--set crate.mass=-1": for a complaint that names two places.
   std::string text(Place place) const;
 
+  /// What is wrong at a place.
+  Complaint complaint(Place place, std::string message) const;
+
   /// Throws Error with all of them in the order of the file, the overrides after it; the first hundred, and
   /// how many more. Requires one.
   [[noreturn]] void raise() const;
 
  private:
-  Complaint complaint(Place place, std::string message) const;
-
   std::string file_;
   std::vector<std::string> sets_;
   std::vector<std::pair<Place, std::string>> found_;

@@ -19,6 +19,7 @@ namespace obscura::scene {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t(16) << 20;
+constexpr const char* kCalculated = "a value is a number, not a calculation: 0.5, not 1/2";
 constexpr int kDeepest =
     64;  // nested lists and tables, and parts of a dotted key: the parser recurses over both
 
@@ -146,6 +147,48 @@ std::string lowered(std::string_view description) {
   return text;
 }
 
+// a line from a column on
+std::string_view from_column(std::string_view line, int column) {
+  std::size_t i = 0;
+  for (int at = 1; at < column && i < line.size(); ++at)
+    i += std::max<std::size_t>(1, code_point(line.substr(i)));
+  return line.substr(std::min(i, line.size()));
+}
+
+// signs of slides and word processors that look like those of a scene
+std::string look_alike(std::string_view at) {
+  for (const std::string_view sign : {"\u2212", "\u2013", "\u2014"})
+    if (at.starts_with(sign)) return fmt::format("a minus is the - of the keyboard, not {}", sign);
+  for (const std::string_view sign : {"\u201C", "\u201D", "\u201E", "\u00AB", "\u00BB", "\u2018", "\u2019"})
+    if (at.starts_with(sign)) return fmt::format("quotes are straight: \"a\", not {}", sign);
+  if (at.starts_with("(")) return "a list is in square brackets: [1, 2]";
+  return {};
+}
+
+// what is wrong with a number, or between two, where the parser stopped behind `before`: at a sign, or where
+// what it cannot read begins
+std::string mistyped_number(std::string_view before, std::string_view at) {
+  const auto digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  const std::size_t last = before.find_last_not_of(" \t");
+  if (last == before.npos) return {};
+  if (last > 0 && before[last] == '.' && digit(before[last - 1]))
+    return "a number has a digit after its point: 3.0";
+  const std::size_t end = std::min(at.find_first_not_of("0123456789._"), at.size());
+  const bool begins =
+      last + 1 < before.size() || before[last] == '=' || before[last] == '[' || before[last] == ',';
+  if (begins && end > 0 && end < at.size() &&
+      std::string_view("+*/^").find(at[end]) != std::string_view::npos)
+    return kCalculated;
+  if (at.empty() || !(digit(before[last]) || before[last] == ']')) return {};
+  if (std::string_view("+-*/^").find(at[0]) != std::string_view::npos && last + 1 == before.size())
+    return kCalculated;
+  const auto opened = std::count(before.begin(), before.end(), '['),
+             closed = std::count(before.begin(), before.end(), ']');
+  if (opened > closed && last + 1 < before.size() && (digit(at[0]) || at[0] == '-' || at[0] == '['))
+    return "the values of a list have commas between them: [1, 2]";
+  return {};
+}
+
 // guesses what was forgotten at the place where the parser stopped: a quote, a bracket, or the quotes around
 // a word; empty if none of these
 std::string forgotten(std::string_view text, int line, int column) {
@@ -185,6 +228,11 @@ std::string forgotten(std::string_view text, int line, int column) {
   const std::string_view here = lines[line - 1];
   const std::size_t first = here.find_first_not_of(" \t"), equals = here.find('=');
   if (first == std::string_view::npos) return {};
+  const std::string_view at = from_column(here, column);
+  if (const std::string sign = look_alike(at); !sign.empty()) return sign;
+  if (const std::string number = mistyped_number(here.substr(0, here.size() - at.size()), at);
+      !number.empty())
+    return number;
   if (column >= 1 && column <= int(here.size()) && here[column - 1] == '.')
     return "a number has a digit before its point: 0.1";
   const auto digit_at = [&](int i) {

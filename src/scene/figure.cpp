@@ -23,6 +23,7 @@ namespace {
 constexpr double kLowestInPrint = 12;  // points: a figure's plot's axis
 constexpr double kNarrowest = 0.08;    // of the picture's height: a plot with all that is beside its axis
 constexpr double kLowestAxis = 0.05;   // of the picture's height: that of a plot
+constexpr double kMostPlots = 0.75;    // of the picture: what plots take
 
 // why a quantity of the whole room goes with no body
 std::string of_room(std::string_view name) {
@@ -250,7 +251,8 @@ draw::Marks read_marks(const Fields& fields, const std::string& owner, const Rea
                                read.site(its, "to"),           read.label(its, "label"), read.color(its),
                                read.marked(its, film)};
     const bool position = vector.quantity == draw::Quantity::position;
-    if (position ? !vector.to && vector.body < 0 : vector.body < 0)
+    // one that names no body here is told of at its place
+    if (!its.given("of") && !(position && vector.to))
       complaints.add(node.place, position ? "a position needs 'to', a place, or 'of', a body"
                                           : "this vector needs 'of', the body that has it");
     if (its.given("with")) vector.with = its_others(*its.given("with"), vector.quantity, names, complaints);
@@ -437,20 +439,25 @@ std::vector<draw::Chart> charts(const Node& top, const Seating<D>& roster, const
   const Fields fields = Fields::of(top, "film");
   const Reader<D> read(roster, world, complaints);
   std::vector<draw::Chart> all;
+  const std::size_t before = complaints.count();
   double below = 0, right = 0;
+  bool sound = true;
+  std::optional<Place> crowded;  // the first plot that has no room
   for (const Node& node : tables(fields, "plot")) {
     const Fields its(node, "film.plot");
+    sound = sound && its.given("quantity");
     draw::Chart chart{read.measured(its)};
     chart.place = its.text("place") == "right" ? draw::Chart::Place::right : draw::Chart::Place::below;
     chart.share = its.number("size") / 100;
     if (chart.place == draw::Chart::Place::below) below += chart.share;
     if (chart.place == draw::Chart::Place::right) right = std::max(right, chart.share);
-    if (std::max(below, right) > 0.75 && all.size() < 100)
-      complaints.add(its.place("size"),
-                     fmt::format("the plots take {:.0f} percent of the picture: 75 is the most",
-                                 100 * std::max(below, right)));
+    if (std::max(below, right) > kMostPlots && !crowded) crowded = its.place("size");
     all.push_back(chart);
   }
+  // plots with other mistakes may have to go
+  if (crowded && sound && complaints.count() == before)
+    complaints.add(*crowded, fmt::format("the plots take {:.0f} percent of the picture: {:.0f} is the most",
+                                         100 * std::max(below, right), 100 * kMostPlots));
   return all;
 }
 

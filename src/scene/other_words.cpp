@@ -12,6 +12,9 @@ namespace {
 constexpr std::array<std::string_view, 7> kThings = {"particle", "ball", "box", "capsule",
                                                      "polygon",  "hull", "body"};
 
+// where tables stand
+constexpr std::string_view kTop = "the top";
+
 struct Other {
   std::initializer_list<std::string_view> words;
   std::string_view hint;
@@ -50,12 +53,13 @@ std::string_view other_word(std::string_view key, std::string_view owner) {
       {{"damping", "linear_damping", "air_resistance"}, "; it is 'drag' here, or 'quadratic_drag'"},
       {{"k", "constant", "spring_constant", "rate"}, "; it is 'stiffness' here", "spring"},
       {{"c", "damper", "damping_constant"}, "; it is 'damping' here", "spring"},
-      {{"a", "b", "body_a", "body_b", "ends", "from", "bodies", "anchors"},
+      {{"a", "b", "body_a", "body_b", "ends", "from", "to", "bodies", "anchors"},
        "; it is 'between' here, its two ends",
        "spring"},
       {{"natural_length", "l0", "free_length"}, "; it is 'rest_length' here", "spring"},
       {{"breaks"},
-       "; an event lets it go: [[when]] with a value such as \"block.spring_force > 50\", and do = [{ release = "
+       "; an event lets it go: [[when]] with a value such as \"block.spring_force > 50\", and do = [{ "
+       "release = "
        "\"...\" }]",
        "spring"},
       {{"a", "b", "body_a", "body_b", "bodies", "parent", "child", "connects", "anchors"},
@@ -68,7 +72,26 @@ std::string_view other_word(std::string_view key, std::string_view owner) {
       {{"speed", "motor_speed", "max_torque", "max_motor_torque"},
        "; it is motor = { speed = ..., most = ... } here",
        "joint"},
+      {{"width", "height", "resolution", "pixels", "dimensions"},
+       "; it is size = [width, height] here, in pixels",
+       "film"},
+      {{"framerate", "frame_rate", "frames_per_second", "rate"}, "; it is 'fps' here", "film"},
+      {{"start", "begin", "from", "end", "stop", "to"},
+       "; a film shows the run from 0 to 'duration', which stands at the top; `obscura render --from 2 --to "
+       "5` "
+       "makes a part of it",
+       "film"},
+      {{"format", "container", "output", "file"}, "; the file's name says it: -o film.mp4", "film"},
+      {{"arrow", "arrows", "vectors"}, "; did you mean [[film.vector]]?", "film"},
+      {{"text", "texts", "words", "annotation", "labels"}, "; did you mean [[film.label]]?", "film"},
+      {{"arrow", "arrows", "vectors"}, "; did you mean [[figure.vector]]?", "figure"},
+      {{"text", "texts", "words", "annotation", "labels"}, "; did you mean [[figure.label]]?", "figure"},
+      {{"circle", "disc", "disk", "sphere"}, "; did you mean [[ball]]?", kTop},
+      {{"rectangle", "rect", "square", "cube", "cuboid", "block", "crate"}, "; did you mean [[box]]?", kTop},
+      {{"simulation", "solver", "engine"}, "; did you mean [physics]?", kTop},
+      {{"world", "environment"}, "; did you mean [room]?", kTop},
   };
+  if (owner.empty()) owner = kTop;
   const bool thing = std::find(kThings.begin(), kThings.end(), owner) != kThings.end();
   for (const Other& each : kOthers) {
     if (each.owner.empty() ? !thing : each.owner != owner) continue;

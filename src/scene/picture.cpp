@@ -277,6 +277,7 @@ std::vector<std::string> parts(const std::string& text) {
 void vary(const Fields& fields, Film& film, Diagnostics& complaints) {
   film.vary = parts(fields.text("vary")), film.vary_names = parts(fields.text("vary_names"));
   film.over = fields.text("vary_place") == "over";
+  film.vary_at = complaints.complaint(fields.place("vary"), "");
   for (const std::string& each : film.vary)
     if (const auto equals = each.find('='); equals == 0 || equals == each.npos || equals + 1 == each.size())
       return complaints.add(fields.place("vary"),

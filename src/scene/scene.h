@@ -13,6 +13,7 @@
 #include "draw/page/figure.h"
 #include "draw/picture/look.h"
 #include "draw/picture/pace.h"
+#include "scene/error.h"
 #include "scene/run_marks.h"
 #include "sim/math/rational.h"
 #include "sim/model/state.h"
@@ -35,6 +36,7 @@ struct Film {
   std::vector<std::string>
       vary;  // "physics.integrator=euler,rk4": the runs that are filmed together; none: one
   std::vector<std::string> vary_names;  // what they are called; none: by their values
+  Complaint vary_at;                    // where `vary` stands: of what is wrong with it
   bool over = false;                    // in the plane: over each other
   bool rows = true;  // its words keep to whole pixels of its height; not where that is not known yet
 };

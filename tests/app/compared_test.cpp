@@ -226,7 +226,14 @@ TEST_F(Compared, WhatCannotBeIsSaid) {
   EXPECT_THAT(told("vary = \"physics.integratr=euler,rk4\"\n"), HasSubstr("integratr"));
   EXPECT_THAT(told("vary = \"physics.integrator=euler,rk5\"\n"), HasSubstr("rk5"));
   EXPECT_THAT(told("vary = \"euler,rk4\"\n"), HasSubstr("a path and its values"));
-  EXPECT_THAT(told("vary = \"ball.mass=1:100\"\n"), HasSubstr("100 runs"));
+  // in the file, not of a flag that was not given
+  const std::string here =
+      "scene.toml:" + std::to_string(std::count(kSpring, kSpring + std::strlen(kSpring), '\n') + 2) +
+      ":8: 'vary': ";
+  EXPECT_THAT(told("vary = \"ball.mas=1,2\"\n"),
+              HasSubstr(here + "ball.mas=1: unknown key 'mas' in [[particle]]; did you mean 'mass'?"));
+  EXPECT_THAT(told("vary = \"ball.mass=3:1\"\n"), HasSubstr(here + "ball.mass=3:1: 3:1 runs backwards"));
+  EXPECT_THAT(told("vary = \"ball.mass=1:100\"\n"), HasSubstr(here + "100 runs"));
   EXPECT_THAT(told("vary = \"ball.mass=1,2\"\nvary_names = \"one\"\n"), HasSubstr("1 names for 2 runs"));
 }
 

@@ -199,6 +199,10 @@ TEST_F(Sweep, OpensNoGl) {
   EXPECT_EQ(run.err.find("libEGL"), std::string::npos);
 }
 
+int head_of_crate_and_ball() {
+  return mosaic_head(scene::parse(kCrateAndBall, "scene.toml", {"film.size=[320,180]"}));
+}
+
 // the words over a run have another decimal mark, and at "." the same as always
 TEST_F(Sweep, WordsOverAPictureHaveTheScenesDecimalMark) {
   scene(kCrateAndBall);
@@ -209,7 +213,7 @@ TEST_F(Sweep, WordsOverAPictureHaveTheScenesDecimalMark) {
         mark + "\"'");
     EXPECT_EQ(drawn.exit, 0) << drawn.err;
     const media::Image all = media::read_png(path("a.png")).image;
-    const Mosaic mosaic(2, 320, 180);
+    const Mosaic mosaic(2, 320, 180, head_of_crate_and_ball());
     return std::string(all.row(mosaic.top(0) - mosaic.words), all.row(mosaic.top(0)));
   };
   EXPECT_EQ(words("."), words("."));
@@ -222,8 +226,13 @@ TEST_F(Sweep, APictureAndAMovieHaveAllRunsBesideEachOther) {
   const std::string asked = "sweep scene.toml --set film.size=[320,180] --set film.fps=10 --vary ";
   ASSERT_EQ(obscura(asked + "seed=1:2 --vary ball.velocity.x=-1,1 --at 0.5 -o all.png").exit, 0);
   const media::Image all = media::read_png(path("all.png")).image;
-  const Mosaic mosaic(4, 320, 180);
+  const Mosaic mosaic(4, 320, 180, head_of_crate_and_ball());
   EXPECT_EQ(mosaic.columns, 2);
+  // under one title and clock
+  ASSERT_EQ(obscura(asked + "seed=1:2 --vary ball.velocity.x=-1,1 --at 0 -o start.png").exit, 0);
+  const media::Image start = media::read_png(path("start.png")).image;
+  ASSERT_GT(mosaic.head, 5);
+  EXPECT_NE(std::string(start.row(0), start.row(mosaic.head)), std::string(all.row(0), all.row(mosaic.head)));
   ASSERT_EQ(all.width, 320);
   int like = 0, unlike = 0;
   for (int y = 0; y < mosaic.height; ++y) {

@@ -354,7 +354,8 @@ TEST(Labels, OfAnArrowThatGoesRoundGoWithIt) {
   }
 }
 
-/// A name says nothing of an arrow that is shorter than its head by far; a value does.
+/// A name says nothing of an arrow that is shorter than its head by far; a value does, also where the arrow
+/// is too short to be drawn, until it is nearly nothing.
 TEST(Labels, NameNoArrowThatIsHardlySeen) {
   Made made = room(8, 4.5);
   made.body(ShapeKind::ball, {4, 2.3, 0}, 0.15);
@@ -375,6 +376,9 @@ TEST(Labels, NameNoArrowThatIsHardlySeen) {
   EXPECT_EQ(strength("F", 1.2), 0);
   EXPECT_EQ(strength("F", 3), 255);
   EXPECT_EQ(strength("F = {:.1}", 1.2), 255);
+  for (const double force : {0.9, 0.7, 0.4}) EXPECT_EQ(strength("F = {:.1}", force), 255) << force;
+  EXPECT_EQ(strength("F", 0.4), 0);
+  EXPECT_EQ(strength("F = {:.1}", 0.001), 0);
 }
 
 /// The words of an arrow whose body leaves the picture leave it as fast, not in an instant.
@@ -478,6 +482,14 @@ TEST(Labels, HiddenOnTheirWayDoNotJump) {
   EXPECT_LT(fastest, 5);
   EXPECT_GT(seen, 100);
   EXPECT_FALSE(course.moves.empty());
+}
+
+/// The words of a point go around it from one side to the other.
+TEST(Labels, OfAPointGoAroundIt) {
+  const std::vector<Placing::Candidate> places{{{0, -50}}, {{0, 50}}};
+  const LabelPlan::Course course{0, {{0, 1, 1}}};
+  for (const double film : {0.0, 0.3, 0.5, 0.7, 1.0})
+    EXPECT_NEAR(place_of_course(course, WordKey::point, {0, 0}, places, film).first.center.norm(), 50, 1e-9);
 }
 
 /// The words of a label at a place of a room that shows its axes.

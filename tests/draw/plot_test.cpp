@@ -12,6 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "draw/compose/comparison.h"
 #include "draw/page/layout.h"
 #include "draw/page/measure.h"
 #include "draw/page/names_around.h"
@@ -593,6 +594,34 @@ TEST(Charts, NamesWithoutRoomAreAKey) {
   EXPECT_EQ(key_of(0.95), 2u);
 }
 
+/// A key stays within its plot, however long the names are, and also where the plots share their left side.
+TEST(Charts, AKeyEndsWithinThePicture) {
+  constexpr double kAspect = 16.0 / 9;
+  for (const int letters : {10, 25, 45, 90})
+    for (const double type_scale : {1.0, 1.5}) {
+      Plot plot;
+      plot.title = over_unit("\"height\"", "m");
+      for (int i = 0; i < 2; ++i) {
+        Series line;
+        line.label = "\"" + std::string(std::size_t(letters), i == 0 ? 'n' : 'a') + "\"";
+        for (int k = 0; k <= 10; ++k) line.values.push_back(0.01 * k);
+        plot.lines.push_back(line);
+      }
+      for (int k = 0; k <= 10; ++k) plot.times.push_back(k);
+      Plot wide = plot;
+      for (Series& line : wide.lines)
+        for (double& value : line.values) value = 1e6 + 12345 * value;
+      Chart chart;
+      chart.place = Chart::Place::right;
+      const Charts charts({chart, chart}, {plot, wide}, palette(Theme::paper), kAspect, 10, {}, 0,
+                          type_scale);
+      List list;
+      charts.draw_still(list);
+      for (const Text& text : list.texts)
+        EXPECT_LE(width_from(text).second, 1080 * kAspect) << letters << " " << said(text);
+    }
+}
+
 /// Lines that pass each other all the time have a key: names beside them would come and go. Lines that pass
 /// each other now and then have not.
 TEST(Charts, NamesOfLinesThatWindAboutEachOtherAreAKey) {
@@ -722,6 +751,29 @@ TEST(Plot, SeveralBodiesHaveLinesOfTheirOwn) {
   for (const char* taken : {"vermilion", "blue", "green"})
     for (const Series& line : second.lines)
       EXPECT_FALSE(line.color == mix(*color(taken), colours.ink, 0.2)) << line.label << " " << taken;
+}
+
+/// A line that is alone has the colour of its quantity; where another body has that, its own body's.
+TEST(Plot, TheOnlyLineOfABodyHasNoOtherBodysColour) {
+  sim::SceneInfo cast;
+  cast.bodies.resize(2);
+  cast.bodies[0].name = "a", cast.bodies[1].name = "b";
+  Measured one;
+  one.quantities = {"x"}, one.bodies = {1};
+  const Palette colours = palette(Theme::paper);
+  const Color plain = mix(*color("blue"), colours.ink, 0.2);
+  Color own[] = {compared_paint(1, Theme::paper).outline, compared_paint(2, Theme::paper).outline};
+  ASSERT_FALSE(own[0] == plain);  // the outline of a blue body is hardly another blue
+  const auto line_color = [&](int body) { return own[body]; };
+  EXPECT_EQ(empty_plot(one, colours, cast, line_color).lines[0].color, own[1]);
+  // of several quantities each has its own
+  one.quantities = {"vx", "vy"};
+  EXPECT_EQ(empty_plot(one, colours, cast, line_color).lines[0].color, plain);
+  // nor where what is blue is fixed, or is not there
+  one.quantities = {"x"}, cast.bodies[0].fixed = true;
+  EXPECT_EQ(empty_plot(one, colours, cast, line_color).lines[0].color, plain);
+  own[0] = own[1], cast.bodies[0].fixed = false;
+  EXPECT_EQ(empty_plot(one, colours, cast, line_color).lines[0].color, plain);
 }
 
 TEST(Plot, BodiesAreWordsNotIdentifiers) {

@@ -50,8 +50,8 @@ TEST(Diagnostics, UnknownKeysSayWhatWasMeant) {
 TEST(Diagnostics, TablesNobodyKnowsAreToldWhichThereAre) {
   refused("[[wall]]", "a.toml:1:3: unknown key 'wall'; 'walls': it belongs in [room]");
   refused(
-      "[[sphere]]",
-      "a.toml:1:3: unknown key 'sphere'; there are [[particle]], [[ball]], [[box]], [[polygon]], [[body]], "
+      "[[wheel]]",
+      "a.toml:1:3: unknown key 'wheel'; there are [[particle]], [[ball]], [[box]], [[polygon]], [[body]], "
       "[[spring]], [[net]], [[joint]], [[chain]], [[bond]], [[explosion]], [[track]], [[force]], "
       "[[attractor]], [[when]], [[mouse]]");
 }
@@ -567,10 +567,10 @@ TEST(Diagnostics, PlotsOfAFilmAreOfSomethingAndLeaveRoom) {
       "[[ball]]\nradius = 0.1\nposition = [1, 1]",
       "a.toml:5:1: there is no room for this plot: its axis would be 20 of the picture's 1080 pixels high; "
       "put fewer plots at the right, or give those below a smaller 'size'");
-  refused(
-      "[figure]\nroom = false\n[[figure.plot]]\nquantity = [\"energy\"]\nheight = 12\n[[ball]]",
-      "a.toml:5:10: there is no room for this plot: its title and its numbers take 10.6 mm, and its axis 4 at "
-      "least; give it a 'height' of 15");
+  refused("[figure]\nroom = false\n[[figure.plot]]\nquantity = [\"energy\"]\nheight = 12\n[[ball]]",
+          "a.toml:5:10: there is no room for this plot: its title and its numbers take 10.6 mm, and its axis "
+          "4 at "
+          "least; give it a 'height' of 15");
   refused("[film]\nshutter = 400", "a.toml:2:11: 'shutter' must be at most 360 deg, got 400");
 }
 

@@ -23,6 +23,7 @@
 #include "app/film/estimate.h"
 #include "app/film/film.h"
 #include "app/run/compared.h"
+#include "app/run/outside.h"
 #include "app/run/run_marks.h"
 #include "app/run/shots.h"
 #include "media/error.h"
@@ -169,6 +170,7 @@ Plan plan(const scene::Scene& scene) {
     it.warnings.push_back(
         fmt::format("that is more memory than the {} it may have", bytes_text(memory_limit())));
   for (const sim::Trouble& ahead : scene.stability_warnings()) it.warnings.push_back(ahead.likely);
+  for (std::string& each : never_shown(scene)) it.warnings.push_back(std::move(each));
   if (waits_for_run(scene))
     it.warnings.push_back(
         "only its run tells where the film stands still or ends at marks and events: frames "

@@ -10,6 +10,7 @@
 #include "app/console/interrupt.h"
 #include "app/console/say.h"
 #include "app/run/compared.h"
+#include "app/run/outside.h"
 #include "app/run/plot_points.h"
 #include "draw/compose/annotations.h"
 #include "draw/page/measure.h"
@@ -24,7 +25,7 @@ namespace {
 constexpr std::int64_t kPixels = 1920;      // of a line in a film
 constexpr double kSample = 1.0 / 15;        // s of the film: how often labels look where they stand
 constexpr double kMostSampled = 128 << 20;  // bytes of instants kept for labels
-constexpr double kBetween = 1.0 / 60;       // s of the film: how often arrows are measured
+constexpr double kBetween = 1.0 / 60;       // s of the film: how often arrows and passing words are looked at
 constexpr double kMostBetween = 32 << 20;   // bytes of instants kept for them
 
 // the instants of a run from which a chart is made: ends of steps, which cost nothing extra; for another
@@ -67,10 +68,12 @@ struct Watched {
   draw::OutmostPlaces reach;  // of its bodies
 };
 
+/// `under_words`: the words of another run are over it.
 Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
               const std::vector<sim::Rational>& times, const std::vector<sim::Rational>& looks,
-              const draw::Palette& colours) {
+              const draw::Palette& colours, bool under_words = false) {
   const draw::Marks& marks = scene.film.marks;
+  const bool instants_kept = !marks.empty() || under_words;
   const auto run = scene.shown_run();
   Watched watched;
   watched.cast = run->scene_info();
@@ -114,7 +117,9 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
   draw::RunAhead& found = watched.marks;
   found.ghosts.resize(marks.ghosts.size());
   double next = 0, stride = kSample, kept = 0;
-  double next_between = marks.vectors.empty() ? 1e300 : 0, between = 0;
+  // arrows are measured, and words pass over each other
+  const bool pass = marks.points.size() + marks.labels.size() + marks.names.size() > 1;
+  double next_between = marks.vectors.empty() && !pass ? 1e300 : 0, between = 0;
   const auto keep = [&](sim::Snapshot now, double film) {
     found.moments.push_back(std::move(now)), found.films.push_back(film);
   };
@@ -141,7 +146,7 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
     if (diverges) continue;
     if (ghost == kStill) {
       // labels may come and go meanwhile
-      if (marks.empty()) continue;
+      if (!instants_kept) continue;
       for (const draw::Pace::Frozen& each : scene.film.speed.frozen()) {
         if (!(each.world == t)) continue;
         for (const double part : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9})
@@ -157,11 +162,11 @@ Watched watch(const scene::Scene& scene, const std::vector<draw::Chart>& wanted,
     }
     for (std::size_t i = 0; i < wanted.size(); ++i)
       add_values(watched.cast, now, wanted[i], lines[i], watched.plots[i]);
-    if (marks.empty()) continue;
+    if (!instants_kept) continue;
     if (film < next - 1e-9) {
       if (film < next_between - 1e-9) continue;
       between += bytes(now), next_between = between < kMostBetween ? film + kBetween : 1e300;
-      found.between.push_back(std::move(now));
+      found.between.push_back(std::move(now)), found.between_films.push_back(film);
       continue;
     }
     kept += bytes(now);
@@ -242,6 +247,14 @@ void tell_never_seen(const scene::Scene& scene,
   }
 }
 
+// Words at places that no camera comes to. Where nothing is known of the run, as it begins.
+void tell_never_shown(const scene::Scene& scene, const Ahead& page,
+                      const std::vector<sim::Snapshot>& moments) {
+  const std::vector<std::string> all =
+      moments.empty() ? never_shown(scene) : never_shown(scene, depictor(scene, page), moments);
+  for (const std::string& each : all) say(stderr, "{}: note: {}\n", scene.file, each);
+}
+
 std::shared_ptr<const draw::Annotations> annotations(const scene::Scene& scene, const Ahead& page,
                                                      draw::RunAhead found, const draw::Scales& given) {
   return std::make_shared<const draw::Annotations>(scene.film.marks, depictor(scene, page), std::move(found),
@@ -265,6 +278,7 @@ void annotate(const Ahead& page, std::vector<Watched>& watched, std::vector<Ahea
         common.*member = own.*member;
   }
   std::vector<std::shared_ptr<const draw::Annotations>> made;
+  if (!runs.empty()) tell_never_shown(runs.front().scene, page, watched.front().marks.moments);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (runs[i].scene.film.marks.empty()) continue;
     runs[i].annotations = annotations(runs[i].scene, page, std::move(watched[i].marks), common);
@@ -307,8 +321,10 @@ Ahead ahead(const scene::Scene& scene) {
   const bool needed = !wanted.empty() || !still || fitted;
   if (runs.empty() && needed) watched.push_back(watch(scene, wanted, times, looks, colours));
   for (const Ahead::Run& run : runs)
-    if (needed) watched.push_back(watch(run.scene, wanted, times, {}, colours));
+    if (needed) watched.push_back(watch(run.scene, wanted, times, {}, colours, scene.film.over && !still));
   if (!runs.empty() && needed) join_plots(runs, watched);
+  for (std::size_t i = 1; i < watched.size() && scene.film.over; ++i)
+    watched.front().marks.others.push_back(std::move(watched[i].marks.moments));
 
   Ahead all;
   draw::OutmostPlaces reach;
@@ -334,6 +350,7 @@ Ahead ahead(const scene::Scene& scene) {
   } else if (!scene.film.marks.empty()) {
     if (watched.empty()) watched.emplace_back();
     const draw::Scales given = given_scales(scene, watched.front().cast);
+    tell_never_shown(scene, all, watched.front().marks.moments);
     all.annotations = annotations(scene, all, std::move(watched.front().marks), given);
     tell_never_seen(scene, {all.annotations});
   }

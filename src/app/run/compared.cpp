@@ -24,13 +24,46 @@ constexpr double kHeaviest = 2;         // of lines in small panels
 constexpr double kLeastType = 21;       // page units: em of their words
 constexpr double kAcrossInSpace = 1.5;  // a panel's width over its height
 
+// where the scene has its `vary`
+[[noreturn]] void refuse(const scene::Scene& scene, std::string message) {
+  scene::Complaint it = scene.film.vary_at;
+  it.message = std::move(message);
+  throw scene::Error({std::move(it)});
+}
+
 Variations variations_of(const scene::Scene& scene) {
   try {
     return Variations(scene.film.vary);
   } catch (const UsageError& error) {
     std::string words = error.what();
-    if (words.starts_with("--vary ")) words.replace(0, 7, "film.vary: ");
-    throw UsageError(words);
+    if (words.starts_with("--vary ")) words.replace(0, 7, "'vary': ");
+    refuse(scene, words);
+  }
+}
+
+// whether a complaint is of a key's value, which it names "--set ball.mass=1", long ones cut
+bool is_of(const scene::Complaint& it, const std::string& set) {
+  constexpr std::string_view kFlag = "--set ", kCut = "...";
+  std::string_view named = it.file;
+  if (!named.starts_with(kFlag)) return false;
+  named.remove_prefix(kFlag.size());
+  if (named == set) return true;
+  return named.ends_with(kCut) && set.starts_with(named.substr(0, named.size() - kCut.size()));
+}
+
+// The scene of a run. What is wrong with a value that varies is told where the scene has it.
+scene::Scene varied(const scene::Scene& scene, const Variations& all, std::int64_t i) {
+  try {
+    return scene.again(all.sets(i, scene.sets));
+  } catch (const scene::Error& error) {
+    std::vector<scene::Complaint> complaints = error.complaints;
+    for (const std::string& set : all.sets(i, {}))
+      for (scene::Complaint& each : complaints) {
+        if (!is_of(each, set)) continue;
+        const std::string message = fmt::format("'vary': {}: {}", set, each.message);
+        each = scene.film.vary_at, each.message = message;
+      }
+    throw scene::Error(std::move(complaints));
   }
 }
 
@@ -46,6 +79,16 @@ void colour(const sim::SceneInfo& cast, bool over, draw::Color color, draw::Look
 
 }  // namespace
 
+void suit_panel(double aspect, double height, scene::Scene& one) {
+  // a panel's lines are as heavy as the page's
+  const double own = draw::page_weight(double(one.film.width) / one.film.height);
+  const double small = height / 1080 * own / draw::page_weight(aspect);
+  one.look.weight = std::clamp(1 / small, 1.0, kHeaviest);
+  // words in a small panel are still read from the back row
+  const double point = draw::film_lettering(one.look.weight * own, one.look.type_scale).point;
+  one.look.type_scale *= std::max(1.0, kLeastType / (draw::kAnnotationType * point * height / 1080));
+}
+
 std::int64_t runs_of(const scene::Scene& scene) {
   return scene.film.vary.empty() ? 1 : variations_of(scene).size;
 }
@@ -57,23 +100,22 @@ std::vector<Ahead::Run> compared(const scene::Scene& scene) {
                                  scene.trajectory_file));
   const Variations all = variations_of(scene);
   if (all.size > kMostRuns)
-    throw UsageError(
-        fmt::format("film.vary: {} runs are more than {}, the most that a film shows; obscura "
-                    "sweep takes more",
-                    all.size, kMostRuns));
+    refuse(scene, fmt::format("'vary': {} runs are more than {}, the most that a film shows; obscura "
+                              "sweep takes more",
+                              all.size, kMostRuns));
   const std::vector<std::string>& names = scene.film.vary_names;
   if (!names.empty() && std::int64_t(names.size()) != all.size)
-    throw UsageError(fmt::format("film.vary_names: {} names for {} runs", names.size(), all.size));
+    refuse(scene, fmt::format("'vary_names' has {} names for {} runs", names.size(), all.size));
 
   const bool over = scene.film.over;
   std::vector<Ahead::Run> runs;
   draw::Extent extent = scene.extent;
   double newton = 0;
   for (std::int64_t i = 0; i < all.size; ++i) {
-    Ahead::Run run{with_run_marks(scene.again(all.sets(i, scene.sets))), {}, {}, {}};
+    Ahead::Run run{with_run_marks(varied(scene, all, i)), {}, {}, {}};
     scene::Scene& one = run.scene;
     if (one.dimension() != scene.dimension())
-      throw UsageError("film.vary: some of its runs are in the plane, others in space");
+      refuse(scene, "'vary': some of its runs are in the plane, others in space");
     // clock and camera are the film's
     one.duration = scene.duration;
     one.film.speed = scene.film.speed, one.film.fps = scene.film.fps, one.film.shutter = scene.film.shutter;
@@ -118,16 +160,7 @@ std::vector<Ahead::Run> compared(const scene::Scene& scene) {
     one.film.width = std::max(1, int(std::lround(panels[i].width / pixel)));
     one.film.height = std::max(1, int(std::lround(panels[i].height / pixel)));
     one.look.caption = false;
-    // a panel's lines are as heavy as the page's
-    const double small = panels[i].height / 1080 *
-                         draw::page_weight(double(one.film.width) / one.film.height) /
-                         draw::page_weight(aspect);
-    one.look.weight = std::clamp(1 / small, 1.0, kHeaviest);
-    // words in a small panel are still read from the back row
-    const double weight = one.look.weight * draw::page_weight(double(one.film.width) / one.film.height);
-    const double type = draw::kAnnotationType * draw::film_lettering(weight, one.look.type_scale).point *
-                        panels[i].height / 1080;
-    one.look.type_scale *= std::max(1.0, kLeastType / type);
+    suit_panel(aspect, panels[i].height, one);
     one.film.charts.clear(), one.film.titles = {};
   }
   return runs;

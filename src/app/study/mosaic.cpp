@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include <fmt/format.h>
@@ -14,8 +15,10 @@
 #include "app/film/film.h"
 #include "app/film/ordered_pipeline.h"
 #include "app/film/output.h"
+#include "app/run/compared.h"
 #include "app/run/shots.h"
 #include "app/run/simulation.h"
+#include "draw/page/layout.h"
 #include "draw/picture/prose.h"
 #include "draw/picture/theme.h"
 #include "draw/picture/type.h"
@@ -33,12 +36,44 @@ constexpr int kLeastWidth = 64, kLeastHeight = 36;  // px of a tile
 // the same piece of all runs
 using Together = std::vector<FilmSegment>;
 
+// The caption of the page on which the runs are, and how high it is, page units: that of the first run's
+// film.
+struct Head {
+  draw::Look look;
+  draw::Layout layout;
+  double height = 0;
+
+  explicit Head(const scene::Scene& scene) : look(scene.look) {
+    layout.aspect = double(scene.film.width) / scene.film.height;
+    layout.width = 1080 * layout.aspect, layout.weight = draw::page_weight(layout.aspect);
+    height = draw::lay_caption(layout, look);
+  }
+
+  // in a picture of this strip alone, so many px high on a page of `page` px
+  draw::Picture picture(double time, int high, int page) const {
+    draw::List words;
+    draw::draw_words(layout, words);
+    if (layout.caption && look.clock) {
+      draw::Text clock = layout.clock;
+      clock.spans[0].text = draw::clock_text(time, look.duration);
+      words.add(clock);
+    }
+    draw::set_decimal_mark(words, look.decimal);
+    draw::Picture strip;
+    strip.aspect = layout.aspect * page / high;
+    strip.ground = draw::palette(look.theme).ground;
+    strip.moving.add(words, double(page) / high, {0, 0});
+    return strip;
+  }
+};
+
 // puts the runs' pictures beside each other; used from one thread
 class Wall {
  public:
-  Wall(const std::vector<Tile>& tiles, const Mosaic& mosaic, int width, int height,
+  Wall(const std::vector<Tile>& tiles, const Head& head, const Mosaic& mosaic, int width, int height,
        const gl::ContextOptions& context)
-      : mosaic_(mosaic), renderer_(mosaic.width, mosaic.height, context) {
+      : mosaic_(mosaic), head_(head), renderer_(mosaic.width, mosaic.height, context) {
+    if (mosaic.head > 0) strip_.emplace(width, mosaic.head, context);
     for (const Tile& tile : tiles) artists_.push_back(depictor(tile.scene, {}));
 
     // the ground, and the words, which are the same in every frame
@@ -63,6 +98,14 @@ class Wall {
   }
 
   const media::Image& frame(const Together& takes, std::size_t n) {
+    // those that cannot go on are behind
+    double time = 0;
+    for (const FilmSegment& take : takes)
+      if (n < take.moments.size()) time = std::max(time, take.moments[n].time);
+    if (strip_) {
+      const media::Image& strip = strip_->draw(head_.picture(time, mosaic_.head, whole_.height));
+      std::memcpy(whole_.row(0), strip.row(0), std::size_t(4) * strip.width * strip.height);
+    }
     for (std::size_t i = 0; i < takes.size(); ++i) {
       if (n >= takes[i].moments.size()) continue;
       const media::Image& own = renderer_.draw(artists_[i].depict(takes[i].moments[n], takes[i].ways));
@@ -75,17 +118,21 @@ class Wall {
 
  private:
   Mosaic mosaic_;
+  Head head_;
   gl::Renderer renderer_;
+  std::optional<gl::Renderer> strip_;
   std::vector<draw::Illustrator> artists_;
   media::Image whole_;
 };
 
-// as a tile shows it: without caption and charts, by one camera
+// as a tile shows it: without caption and charts, by one camera, with words as large as the page's
 void suit(const Mosaic& mosaic, std::vector<Tile>& tiles) {
+  const scene::Film page = tiles.front().scene.film;
   for (Tile& tile : tiles) {
     scene::Scene& scene = tile.scene;
     scene.look.caption = false;
     scene.film.width = mosaic.width, scene.film.height = mosaic.height;
+    suit_panel(double(page.width) / page.height, 1080.0 * mosaic.height / page.height, scene);
     scene.film.shutter = 0;
     scene.film.charts.clear();
     if (scene.cameras.size() > 1) scene.cameras.resize(1);
@@ -150,8 +197,9 @@ int ended(const std::string& out, std::size_t runs, std::size_t trouble, const s
 
 }  // namespace
 
-Mosaic::Mosaic(int n, int picture_width, int picture_height) {
-  gap = std::max(4, picture_height / 135), words = std::max(14, picture_height / 40);
+Mosaic::Mosaic(int n, int picture_width, int whole_height, int strip) : head(strip) {
+  const int picture_height = whole_height - strip;
+  gap = std::max(4, whole_height / 135), words = std::max(14, whole_height / 40);
   const double aspect = double(picture_width) / picture_height;
   double best = 0;
   for (int c = 1; c <= n; ++c) {
@@ -163,20 +211,25 @@ Mosaic::Mosaic(int n, int picture_width, int picture_height) {
   }
   if (columns == 0)
     throw UsageError(fmt::format("{} runs have no room in {}x{} pixels: vary less, or --set film.size", n,
-                                 picture_width, picture_height));
+                                 picture_width, whole_height));
+}
+
+int mosaic_head(const scene::Scene& scene) {
+  return int(std::lround(Head(scene).height * scene.film.height / 1080));
 }
 
 int mosaic_still(std::vector<Tile> tiles, sim::Rational at, const std::string& out,
                  const MosaicOptions& options) {
   const scene::Film film = tiles.front().scene.film;
-  const Mosaic mosaic(int(tiles.size()), film.width, film.height);
+  const Head head(tiles.front().scene);
+  const Mosaic mosaic(int(tiles.size()), film.width, film.height, mosaic_head(tiles.front().scene));
   suit(mosaic, tiles);
   media::make_folder_of(out);
   Progress progress(options.progress, out, 1, 0, "pictures");
   Runs runs(tiles, Shots::still(at, film.fps, {}), 1, crew(options));
   const std::optional<Together> takes = runs.next();
   if (interrupted()) return kInterrupted;
-  Wall wall(tiles, mosaic, film.width, film.height, options.context);
+  Wall wall(tiles, head, mosaic, film.width, film.height, options.context);
   media::write_png(out, wall.frame(takes.value_or(Together(tiles.size())), 0),
                    {.tags = {{"Software", "obscura " OBSCURA_VERSION}}});
   return ended(
@@ -192,7 +245,8 @@ int mosaic_movie(std::vector<Tile> tiles, const std::string& out, const MosaicOp
   spec.tags = {{"Software", "obscura " OBSCURA_VERSION}, {"Title", draw::in_letters(first.look.title)}};
   media::make_folder_of(out);
   const Shots shots = Shots::film(first.duration, first.film.fps, first.film.speed);
-  const Mosaic mosaic(int(tiles.size()), spec.width, spec.height);
+  const Head head(first);
+  const Mosaic mosaic(int(tiles.size()), spec.width, spec.height, mosaic_head(first));
   suit(mosaic, tiles);
 
   Runs runs(tiles, shots, media::segment_frames(spec), crew(options));
@@ -202,7 +256,7 @@ int mosaic_movie(std::vector<Tile> tiles, const std::string& out, const MosaicOp
   Conduct<Together, media::Segment> parts;
   parts.produce = [&] { return runs.next(); };
   parts.hire = [&] {
-    auto wall = std::make_shared<Wall>(tiles, mosaic, spec.width, spec.height, options.context);
+    auto wall = std::make_shared<Wall>(tiles, head, mosaic, spec.width, spec.height, options.context);
     return [&, wall](const Together& takes) {
       media::SegmentEncoder encoder(out, spec);
       std::size_t frames = 0;

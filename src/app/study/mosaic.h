@@ -17,18 +17,22 @@ struct Tile {
 };
 
 /// The places of `n` equal tiles in a picture, row by row, each under a line of words: as large as they can
-/// be.
+/// be. Above them is a strip for the title and the clock.
 struct Mosaic {
   int columns = 0, rows = 0;
   int width = 0, height = 0;  // of a tile, px
   int words = 0, gap = 0;     // height of its line, between tiles, px
+  int head = 0;               // height of the strip
 
   /// Throws UsageError where the picture has no room for so many.
-  Mosaic(int n, int picture_width, int picture_height);
+  Mosaic(int n, int picture_width, int picture_height, int head = 0);
 
   int left(int i) const { return gap + i % columns * (width + gap); }
-  int top(int i) const { return gap + i / columns * (words + height + gap) + words; }
+  int top(int i) const { return head + gap + i / columns * (words + height + gap) + words; }
 };
+
+/// How high the strip for title and clock of a scene's film is, px; 0: the scene shows neither.
+int mosaic_head(const scene::Scene& scene);
 
 struct MosaicOptions {
   int workers = 0;  // 0: one a core

@@ -25,7 +25,10 @@ constexpr double kAslant = 0.05;        // sine of an angle: nearer to each othe
 constexpr double kApart = 1.1;          // widths of an arrow: how far one on another's line moves aside
 constexpr double kHeads = 3;            // the same: so near to each other heads meet
 constexpr double kTail = 1.7;           // widths of an arrow: radius of the dot where it begins
-constexpr double kFull = 0.28;          // of an arrow's growth: from here on its value is as strong as others
+constexpr double kFull =
+    0.28;  // of an arrow's growth: from here on words of one that leaves the picture are whole
+constexpr double kValued = 0.14, kValuedFull = 0.18;   // the same: between these a value comes
+constexpr double kLeastGrowth = 0.1;                   // the same: of less an arrow is nothing
 constexpr double kNamedFrom = 0.4, kNamedFull = 0.66;  // the same of a name alone, up to the head's length
 constexpr double kOutOfBall = 0.6;  // of a ball's radius: how far beyond it words of an arrow within it end
 
@@ -75,6 +78,14 @@ double Notes::bare(const Point& tail, const Point& tip) {
   return 2;
 }
 
+// how much of its whole size an arrow comes to have in a film
+double Notes::most_growth(const WordKey& key) const {
+  if (!how_.plan) return 1;
+  const auto range = how_.plan->ranges.find(key);
+  if (range == how_.plan->ranges.end()) return 1;
+  return std::max(kLeastGrowth, growth({0, 0}, {range->second.longest, 0}, arrow_));
+}
+
 bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink,
                   const AroundTail& around) {
   std::vector<Arrow> arrows;
@@ -83,36 +94,42 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
     double& longest = (*how_.ranges)[key].longest;
     longest = std::max(longest, (tip - tail).norm());
   }
-  if (arrows.empty()) return false;
-  if (how_.ranges) {
+  // a value is read also where its arrow is always too short to be drawn
+  const bool drawn = !arrows.empty();
+  const double grow = growth(tail, tip, arrow_), most = film() && around.valued ? most_growth(key) : 1;
+  if (!drawn && !(film() && around.valued && grow > kValued * most && grow <= kSmallest)) return false;
+  if (how_.ranges && drawn) {
     const Point way = tip - tail;
     const double turn = std::atan2(-way.y(), way.x()) / (2 * std::numbers::pi);
     (*how_.ranges)[key].ways |= 1u << (int(std::floor(8 * turn)) & 7);
   }
+  if (!drawn) arrows.push_back({.tail = tail, .tip = tip, .grow = grow});
   arrows[0].hang = hang_;
-  arrows[0].bare = bare(arrows[0].tail, arrows[0].tip);
+  if (drawn) arrows[0].bare = bare(arrows[0].tail, arrows[0].tip);
   // axes lie under plates, so that words are read over them; the others are drawn when all are known
   if (key.kind == WordKey::axis) {
     if (!how_.survey) draw_arrows(arrows, arrow_, colours_.room, ink, list_);
     axes_.push_back(arrows[0]);
-  } else {
+  } else if (drawn) {
     arrows_.push_back(arrows[0]), inks_.push_back(ink);
   }
   // in print words stand beside what is seen of it
   const auto part = film() ? std::optional(std::pair(tail, arrows[0].tip)) : seen(tail, arrows[0].tip);
   if (!part) return false;
   const auto [start, end] = *part;
-  if (film() || key.kind == WordKey::axis) avoid_arrow(start, end);
-  // words come and go with the arrow: a value is as strong as others while it is there, however small it is;
-  // a name alone says nothing of an arrow that is hardly seen, but for one that is leaving the picture
-  const auto [from_grow, full_grow] =
-      around.valued || arrows[0].cut ? std::pair(kSmallest, kFull) : std::pair(kNamedFrom, kNamedFull);
+  if (drawn && (film() || key.kind == WordKey::axis)) avoid_arrow(start, end);
+  // words come and go with the arrow: a value is as strong as others while that is there, or is as long as it
+  // ever is; a name alone says nothing of an arrow that is hardly seen, but for one that is leaving the
+  // picture
+  const auto [from_grow, full_grow] = arrows[0].cut   ? std::pair(kSmallest, kFull)
+                                      : around.valued ? std::pair(kValued * most, kValuedFull * most)
+                                                      : std::pair(kNamedFrom, kNamedFull);
   if (film()) fade(label, (arrows[0].grow - from_grow) / (full_grow - from_grow));
   // those of one that ends within its ball stand where it would leave it; which place they have is chosen for
   // the others
   const auto [from, to] = eased(key, start, end, around.center);
   const double length = (to - from).norm(), reach = (1 + kOutOfBall) * around.ball;
-  const bool within = film() && !how_.survey && length < reach;
+  const bool within = film() && !how_.survey && length > 0 && length < reach;
   const Point beyond = within ? Point(from + reach / length * (to - from)) : to;
   const double gap = (film() ? kBeside : kBesideInPrint) * gap_;
   std::vector<Placing::Candidate> places =
@@ -136,7 +153,8 @@ bool Notes::arrow(const WordKey& key, const Point& tail, const Point& tip, Formu
         places.push_back(still);
   }
   Word* its = word(key, label, std::move(places), (start + end) / 2, std::pair(start, end), around.center);
-  if (its && key.kind != WordKey::axis) its->shown = int(arrows_.size()) - 1;
+  if (its) its->ball = around.ball;
+  if (its && drawn && key.kind != WordKey::axis) its->shown = int(arrows_.size()) - 1;
   return true;
 }
 

@@ -98,6 +98,7 @@ struct Offered {
   std::optional<std::pair<Point, Point>> arrow{};  // from tail to tip: that it names, and does not pass over
   Point along{0, 0};                               // the body that the arrow goes with
   bool legible = true;                             // strong enough to be read
+  double ball = 0;                                 // the radius of that in whose middle the arrow begins
 };
 
 /// Whether words with so many places hardly move, as those at a place of the room: they are planned before
@@ -114,19 +115,26 @@ struct LabelPlan {
     double begin = 0, end = 0;  // s of the film
     int to = 0;
   };
+  /// At a time of the film words are seen no more than so much, 0 to 1.
+  struct Dim {
+    double film = 0, strength = 1;
+  };
   struct Course {
     int first = 0;
     std::vector<Move> moves;
     bool covers = true;  // whether something may lie under them
     bool yields = true;  // whether they fade where they come over other words, which they do only in passing
+    std::vector<Dim> dims{};  // in the order of time: where they do
   };
   std::map<WordKey, ValueRange> ranges;
   std::map<WordKey, EasedArrow> arrows;  // as seen from their bodies
   std::map<WordKey, Course> courses;
 };
 
-/// A place between two of the same words, a part of the way from one to the other. A name goes around what it
-/// names, at `anchor`.
+/// Whether words go around what they name, at `anchor`, from one place to another; others go straight.
+inline bool goes_around(WordKey::Kind kind) { return kind == WordKey::name || kind == WordKey::point; }
+
+/// A place between two of the same words, a part of the way from one to the other.
 Point on_its_way(WordKey::Kind kind, const Point& anchor, const Point& from, const Point& to, double part);
 
 /// Where the words of a course stand at a time of the film, and how far their leader is drawn, 0 to 1.
@@ -139,6 +147,14 @@ std::pair<Placing::Candidate, double> place_of_course(const LabelPlan::Course& c
 struct Timed {
   const sim::Snapshot* then = nullptr;
   std::string words;
+};
+
+/// Words of a film where they stand at an instant.
+struct Standing {
+  WordKey key;
+  Point center, size;
+  double strength = 1;  // as strong as what they name lets them be
+  bool stays = false;   // they do not move, and go before others
 };
 
 /// How marks are drawn at one instant.
@@ -158,6 +174,7 @@ struct Annotating {
   std::span<const Timed> times{};
   int times_of = -1;
   std::vector<WordKey>* unseen = nullptr;
+  std::vector<Standing>* standing = nullptr;  // of a film: collects where words stand, and draws none
 };
 
 /// The words of bodies that have some.

@@ -14,6 +14,7 @@
 #include "draw/compose/arrow_scales.h"
 #include "draw/compose/depict.h"
 #include "draw/compose/label_courses.h"
+#include "draw/compose/passing.h"
 #include "draw/picture/way.h"
 
 namespace obscura::draw {
@@ -71,6 +72,20 @@ std::vector<std::vector<sim::Vec3>> ways_behind(const Look& look, const std::vec
     for (const WorldLine::Node& node : path.nodes) way.push_back(node.at);
   }
   return ways;
+}
+
+// of each run over this one the instant nearest to a time
+std::vector<SpaceGhost> others_at(const RunAhead& ahead, double time) {
+  static const std::vector<int> kAllThatMove;
+  std::vector<SpaceGhost> all;
+  for (const std::vector<sim::Snapshot>& run : ahead.others) {
+    if (run.empty()) continue;
+    auto next = std::lower_bound(run.begin(), run.end(), time,
+                                 [](const sim::Snapshot& now, double t) { return now.time < t; });
+    if (next == run.end() || (next != run.begin() && time - (next - 1)->time < next->time - time)) --next;
+    all.push_back({&*next, &kAllThatMove});
+  }
+  return all;
 }
 
 }  // namespace
@@ -196,12 +211,14 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
       List unused;
       offered[k].clear();
       const auto behind = ways_behind(look_, moments, k, path_lines(marks_, paths_, moments[k], films[k]));
+      const auto others = others_at(ahead, moments[k].time);
       Annotating how{.lettering = lettering_,
                      .film = films[k],
                      .plan = &ranges,
                      .survey = &offered[k],
                      .look = &look_,
-                     .behind = behind};
+                     .behind = behind,
+                     .ghosts = others};
       annotate(marks_, scales_, cast_, colours_, artist.projection(panel, moments[k]), moments[k], unused,
                how);
     }
@@ -212,6 +229,7 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
       for (const Offered& each : sample)
         if (each.key.kind == WordKey::vector && each.legible) legible.insert(each.key.index);
     plan.courses = courses(offered, films, lettering_.point, speed);
+    plan_passing(ahead, artist, panel, plan);
     // lines behind bodies are not among what is avoided
     if (!marks_.paths.empty() || !marks_.ghosts.empty() || artist.longest_trail() > 0)
       for (auto& [key, course] : plan.courses) course.covers = true;
@@ -219,6 +237,29 @@ Annotations::Annotations(const Marks& marks, const Illustrator& artist, RunAhead
   }
   std::erase_if(largest, [&](const auto& each) { return legible.contains(each.first); });
   never_seen_.assign(largest.begin(), largest.end());
+}
+
+// where words pass over others, looked for at all instants that are known
+void Annotations::plan_passing(const RunAhead& ahead, const Illustrator& artist, int panel,
+                               LabelPlan& plan) const {
+  if (plan.courses.size() < 2) return;
+  std::vector<std::pair<double, const sim::Snapshot*>> instants;
+  for (std::size_t k = 0; k < ahead.moments.size(); ++k)
+    instants.emplace_back(ahead.films[k], &ahead.moments[k]);
+  for (std::size_t k = 0; k < ahead.between_films.size(); ++k)
+    instants.emplace_back(ahead.between_films[k], &ahead.between[k]);
+  std::stable_sort(instants.begin(), instants.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::vector<Standing>> standing(instants.size());
+  std::vector<double> films;
+  for (std::size_t k = 0; k < instants.size(); ++k) {
+    const auto& [film, now] = instants[k];
+    List unused;
+    annotate(marks_, scales_, cast_, colours_, artist.projection(panel, *now), *now, unused,
+             {.lettering = lettering_, .film = film, .plan = &plan, .standing = &standing[k]});
+    films.push_back(film);
+  }
+  draw::plan_passing(standing, films, plan);
 }
 
 std::vector<WorldLine> Annotations::lines(const sim::Snapshot& now, double film) const {

@@ -22,6 +22,9 @@ struct RunAhead {
   std::vector<sim::Snapshot> between;       // more instants, for the lengths of arrows
   std::vector<sim::Snapshot> ghosts;        // one a ghost of the marks
   std::shared_ptr<const sim::Track> track;  // of the bodies with paths
+  std::vector<double> between_films{};      // s of the film: when it shows the instants between
+  // of the runs that are drawn over it, in the order of time: their bodies are there, too
+  std::vector<std::vector<sim::Snapshot>> others{};
 };
 
 /// The scales of a film's arrows: those of `given` that are not 0, and for the others the ones at which all
@@ -55,6 +58,8 @@ class Annotations {
   const LabelPlan& plan(int panel) const { return plans_[std::size_t(panel)]; }
 
  private:
+  void plan_passing(const RunAhead& ahead, const Illustrator& artist, int panel, LabelPlan& plan) const;
+
   Marks marks_;
   sim::SceneInfo cast_;
   Look look_;

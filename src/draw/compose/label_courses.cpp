@@ -3,7 +3,7 @@
 //   sum c_i dt + a for each change + b for each unit of its way
 // which dynamic programming finds (Viterbi). Labels are planned one after another; the earlier ones are in
 // the way of the later ones, also while they go from one place to another, which takes as long as the speed
-// of a label says.
+// of a label says. Where labels clash all the same, they are planned again beside all others.
 
 #include "draw/compose/label_courses.h"
 
@@ -24,12 +24,13 @@ constexpr double kHeadWide = 10;  // page units: of an arrow's head, which is wi
 constexpr double kShared = 4000;  // points: of a second of lying on another label
 constexpr double kPassing = 0.4;  // of the time that a label is shown: for less it lies on others in passing
 constexpr double kAroundWords = 1.2;  // of their size: which leaders keep off
-constexpr double kLedThrough = 120;   // points: of a leader through another label
+constexpr double kLedThrough = 400;   // points: of a leader through another label
 constexpr double kOver = 8;           // of each unit of its own arrow that it passes over
 constexpr double kTouches = 120;      // page units: of touching it on the way
 constexpr double kJump = 20;          // of each unit that it would jump with its arrow
 constexpr double kFlips = 0.8;        // cosine of the least angle by which an arrow flips
 constexpr double kNoJump = 3;         // points: no jump yet
+constexpr int kRounds = 3;            // in which labels that clash are planned again
 constexpr double kSteadily = 1.5;     // times as far as in the intervals around it: still a swing
 
 /// A label that is planned, where it stands at a sample.
@@ -72,16 +73,21 @@ bool leads_through(const Offered& a, const Placing::Candidate& at, const Offered
          under(behind ? a.arrow->first : a.anchor, at.center, other.center, kAroundWords * b.size) > 0;
 }
 
-// how far it is from one place to another: a name goes around its body
+// how far it is from one place to another
 double way(const Offered& label, std::size_t i, std::size_t j) {
   const Point a = label.places[i].center - label.anchor, b = label.places[j].center - label.anchor;
-  if (label.key.kind != WordKey::name) return (b - a).norm();
+  if (!goes_around(label.key.kind)) return (b - a).norm();
   const double turn = std::atan2(std::abs(a.x() * b.y() - a.y() * b.x()), a.dot(b));
   return std::hypot(turn * std::max(a.norm(), b.norm()), b.norm() - a.norm());
 }
 
-// The cost of its way from place i to place j: a label goes around the head of its arrow, not over it. No
-// more is added up than `most`.
+// how deep a ball lies in a rectangle
+double deep_in(const Point& ball, double radius, const Point& center, const Point& size) {
+  return radius - ((ball - center).cwiseAbs() - size / 2).cwiseMax(Point(0, 0)).norm();
+}
+
+// The cost of its way from place i to place j: a label goes around the head of its arrow and around the ball
+// in which that begins, not over them. No more is added up than `most`.
 double cost_of_way(const Offered& label, std::size_t i, std::size_t j,
                    double most = std::numeric_limits<double>::infinity()) {
   const Point &from = label.places[i].center, &to = label.places[j].center;
@@ -92,6 +98,8 @@ double cost_of_way(const Offered& label, std::size_t i, std::size_t j,
     const double over = under(label.arrow->first, label.arrow->second, from + part * (to - from),
                               label.size + Point(kHeadWide, kHeadWide));
     if (over > 0) cost += kTouches + kOver * over;
+    const double deep = deep_in(label.arrow->first, label.ball, from + part * (to - from), label.size);
+    if (label.ball > 0 && deep > 0) cost += kTouches + kOver * deep;
   }
   return cost;
 }
@@ -176,6 +184,41 @@ class Planner {
     return best;
   }
 
+  // what a course costs as it is gone, the changes and the lengths of its ways too
+  double spent(const LabelPlan::Course& course) const {
+    double sum = 0;
+    int from = course.first;
+    for (const LabelPlan::Move& move : course.moves) {
+      std::size_t k = 0;
+      while (k + 1 < at_.size() && film(k) < move.begin) ++k;
+      sum += kChange * point_ + cost_of_way(*at_[k].second, std::size_t(from), std::size_t(move.to));
+      from = move.to;
+    }
+    for (std::size_t k = 0; k < at_.size(); ++k) {
+      const Offered& label = *at_[k].second;
+      double own = label.places[std::size_t(course.first)].cost;
+      for (const LabelPlan::Move& move : course.moves) {
+        if (film(k) <= move.begin) break;
+        const double gone = film(k) >= move.end ? 1 : (film(k) - move.begin) / (move.end - move.begin);
+        own += gone * (label.places[std::size_t(move.to)].cost - own);
+      }
+      sum += jumped(course, k);
+      sum += lasting(k) *
+             (own + among(k, place_of_course(course, kind_, label.anchor, label.places, film(k)).first));
+    }
+    return sum;
+  }
+
+  /// Whether it lies on others anywhere, or a leader runs through words.
+  bool clashes(const LabelPlan::Course& course) const {
+    for (std::size_t k = 0; k < at_.size(); ++k) {
+      const Offered& label = *at_[k].second;
+      if (among(k, place_of_course(course, kind_, label.anchor, label.places, film(k)).first) > 0)
+        return true;
+    }
+    return false;
+  }
+
  private:
   double film(std::size_t k) const { return times_[k]; }
   // whether it was not shown before sample k
@@ -199,7 +242,7 @@ class Planner {
     if (taken_[sample].empty()) return 0;
     const Point &from = label.places[i].center, &to = label.places[j].center;
     const double s = part * part * (3 - 2 * part);
-    if (kind_ == WordKey::name) return on_others(sample, label, on_its_way(kind_, label.anchor, from, to, s));
+    if (goes_around(kind_)) return on_others(sample, label, on_its_way(kind_, label.anchor, from, to, s));
     return on_others(sample, label, {from.x() + s * (to.x() - from.x()), from.y() + s * (to.y() - from.y())});
   }
 
@@ -263,7 +306,7 @@ class Planner {
       Point center;
     };
     std::vector<Ranked> ahead(n);
-    const bool straight = kind_ != WordKey::name;
+    const bool straight = !goes_around(kind_);
     std::vector<std::vector<std::size_t>> from(at_.size(), std::vector<std::size_t>(n, 0));
     for (std::size_t k = 0; k < at_.size(); ++k) {
       const Offered& offered = *at_[k].second;
@@ -357,31 +400,6 @@ class Planner {
     return course;
   }
 
-  // what a course costs as it is gone, the changes and the lengths of its ways too
-  double spent(const LabelPlan::Course& course) const {
-    double sum = 0;
-    int from = course.first;
-    for (const LabelPlan::Move& move : course.moves) {
-      std::size_t k = 0;
-      while (k + 1 < at_.size() && film(k) < move.begin) ++k;
-      sum += kChange * point_ + cost_of_way(*at_[k].second, std::size_t(from), std::size_t(move.to));
-      from = move.to;
-    }
-    for (std::size_t k = 0; k < at_.size(); ++k) {
-      const Offered& label = *at_[k].second;
-      double own = label.places[std::size_t(course.first)].cost;
-      for (const LabelPlan::Move& move : course.moves) {
-        if (film(k) <= move.begin) break;
-        const double gone = film(k) >= move.end ? 1 : (film(k) - move.begin) / (move.end - move.begin);
-        own += gone * (label.places[std::size_t(move.to)].cost - own);
-      }
-      sum += jumped(course, k);
-      sum += lasting(k) *
-             (own + among(k, place_of_course(course, kind_, label.anchor, label.places, film(k)).first));
-    }
-    return sum;
-  }
-
   // what a course costs by its jumps from sample k - 1 to sample k
   double jumped(const LabelPlan::Course& course, std::size_t k) const {
     if (k == 0 || jumps_.empty()) return 0;
@@ -404,6 +422,31 @@ class Planner {
   std::vector<double> jumps_;  // of each sample each place's cost of jumping there; none: nothing jumps
 };
 
+// where the words of a course stand
+Placing::Candidate standing(const LabelPlan::Course& course, const Offered& offered, double film) {
+  return place_of_course(course, offered.key.kind, offered.anchor, offered.places, film).first;
+}
+
+void take(const Seen& at, const LabelPlan::Course& course, const std::vector<double>& films, Taken& taken) {
+  for (const auto& [sample, offered] : at)
+    taken[sample].push_back({offered, standing(course, *offered, films[sample])});
+}
+
+// whether something lies under its words, and whether they lie on earlier ones only in passing
+void tell_covers(const Seen& at, const std::vector<double>& films, const Taken& taken,
+                 LabelPlan::Course& course) {
+  course.covers = !course.moves.empty();
+  std::size_t covering = 0;
+  for (const auto& [sample, offered] : at) {
+    const Placing::Candidate stands = standing(course, *offered, films[sample]);
+    course.covers = course.covers || !stands.clear;
+    covering += std::any_of(taken[sample].begin(), taken[sample].end(), [&](const Planned& other) {
+      return overlap(*offered, stands.center, other) > 0;
+    });
+  }
+  course.yields = double(covering) < kPassing * double(at.size());
+}
+
 }  // namespace
 
 std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offered>>& samples,
@@ -424,21 +467,29 @@ std::map<WordKey, LabelPlan::Course> courses(const std::vector<std::vector<Offer
   std::map<WordKey, LabelPlan::Course> planned;
   Taken taken(samples.size());
   for (const WordKey& key : order) {
-    const Seen& at = seen[key];
-    LabelPlan::Course course = Planner(at, films, taken, point, speed).course();
-    course.covers = !course.moves.empty();
-    std::size_t covering = 0;
-    for (const auto& [sample, offered] : at) {
-      const Placing::Candidate stands =
-          place_of_course(course, key.kind, offered->anchor, offered->places, films[sample]).first;
-      course.covers = course.covers || !stands.clear;
-      covering += std::any_of(taken[sample].begin(), taken[sample].end(), [&](const Planned& other) {
-        return overlap(*offered, stands.center, other) > 0;
-      });
-      taken[sample].push_back({offered, stands});
+    planned[key] = Planner(seen[key], films, taken, point, speed).course();
+    take(seen[key], planned[key], films, taken);
+  }
+  // those that clash are planned again, beside all others
+  for (int round = 0; round < kRounds; ++round) {
+    bool better = false;
+    for (const WordKey& key : order) {
+      for (const auto& [sample, offered] : seen[key])
+        std::erase_if(taken[sample], [&](const Planned& each) { return each.label->key == key; });
+      const Planner planner(seen[key], films, taken, point, speed);
+      if (planner.clashes(planned[key])) {
+        LabelPlan::Course other = planner.course();
+        if (planner.spent(other) < planner.spent(planned[key]) - point)
+          planned[key] = std::move(other), better = true;
+      }
+      take(seen[key], planned[key], films, taken);
     }
-    course.yields = double(covering) < kPassing * double(at.size());
-    planned.emplace(key, std::move(course));
+    if (!better) break;
+  }
+  taken.assign(samples.size(), {});
+  for (const WordKey& key : order) {
+    tell_covers(seen[key], films, taken, planned[key]);
+    take(seen[key], planned[key], films, taken);
   }
   return planned;
 }

@@ -12,14 +12,15 @@
 namespace obscura::draw {
 namespace {
 
-constexpr std::size_t kManyNames = 40;   // from here on a name stands above its body or below
-constexpr double kNameGap = 1.3;         // from a body to its name, as against others
-constexpr double kBesideArrows = 4;      // points: the cost of a place that turns with an arrow
-constexpr double kSteady = 0.25;         // of its greatest length: an arrow that is never shorter
-constexpr std::size_t kSidesOfAxes = 4;  // places of words beside two axes
-constexpr double kLeader = 6;            // points: farther off words have a line to what they name
-constexpr double kStraight = 1e-3;       // sine of an angle: a way that turns by less is straight
-constexpr double kInner = 24;            // points: the cost of a time on the other side of its body's way
+constexpr std::size_t kManyNames = 40;        // from here on a name stands above its body or below
+constexpr double kNameGap = 1.3;              // from a body to its name, as against others
+constexpr double kInRoom = 12, kOffWall = 4;  // points: the cost of a place off a wall, and how far off
+constexpr double kBesideArrows = 4;           // points: the cost of a place that turns with an arrow
+constexpr double kSteady = 0.25;              // of its greatest length: an arrow that is never shorter
+constexpr std::size_t kSidesOfAxes = 4;       // places of words beside two axes
+constexpr double kLeader = 6;                 // points: farther off words have a line to what they name
+constexpr double kStraight = 1e-3;            // sine of an angle: a way that turns by less is straight
+constexpr double kInner = 24;  // points: the cost of a time on the other side of its body's way
 
 // of a body one arrow, from its centre
 constexpr Quantity kSingle[] = {Quantity::velocity, Quantity::acceleration, Quantity::momentum,
@@ -170,6 +171,20 @@ void Notes::name(int index, const Marks::Name& name, const Marks& marks) {
       if (many && places.size() == 2) break;
     }
     if (many) break;
+  }
+  // within the room, where a wall is beside it
+  if (film() && !many) {
+    const auto [room_low, room_high] = room_window();
+    const Point margin(kOffWall * point_, kOffWall * point_), first = room_low + half + margin,
+                                                              last = room_high - half - margin;
+    for (const double off : {0.0, 13.0, 26.0, 39.0})
+      for (const double up : {-1.0, 1.0}) {
+        double reach = 0;
+        for (const Point& p : outline) reach = std::max(reach, up * (p.y() - at.y()));
+        Point middle(at.x(), at.y() + up * (reach + kNameGap * gap_ + off * point_ + half.y()));
+        if (first.x() < last.x()) middle.x() = std::clamp(middle.x(), first.x(), last.x());
+        places.push_back({middle, (kInRoom + (up > 0 ? 4 : 0) + off) * point_, off > kLeader});
+      }
   }
   // beside its arrows, however they turn
   for (const Point& way : steady_arrows(name.body, marks)) {

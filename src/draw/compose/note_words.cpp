@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "draw/compose/notes.h"
+#include "draw/compose/passing.h"
 #include "draw/page/measure.h"
 #include "draw/picture/convex.h"
 #include "draw/picture/formula_values.h"
@@ -139,7 +140,7 @@ Formula Notes::set(const WordKey& key, const std::string& text, double value, st
 }
 
 Point on_its_way(WordKey::Kind kind, const Point& anchor, const Point& from, const Point& to, double part) {
-  if (kind != WordKey::name) return from + part * (to - from);
+  if (!goes_around(kind)) return from + part * (to - from);
   const Point a = from - anchor, b = to - anchor;
   const double turn = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)) * part,
                far = a.norm() + part * (b.norm() - a.norm()), s = std::sin(turn), c = std::cos(turn);
@@ -329,6 +330,7 @@ void Notes::avoid_ghosts() {
   for (const SpaceGhost& ghost : how_.ghosts)
     for (std::size_t i = 0; i < cast_.bodies.size(); ++i) {
       const std::vector<int>& only = *ghost.bodies;
+      if (i >= ghost.then->bodies.size()) break;
       if (only.empty() ? cast_.bodies[i].fixed : std::find(only.begin(), only.end(), int(i)) == only.end())
         continue;
       for (const std::vector<Point>& outline : forms(int(i), 12, *ghost.then)) {
@@ -380,28 +382,21 @@ void Notes::avoid_own_arrows() {
   for (const Push& push : pushes(cast_, look, now_)) arrow(push.point, push.point + scale * push.force);
 }
 
-// Words that come over others in passing are not seen there: they fade within their margin. Those with one
-// place do not move, and go before all others.
+// Words that come over others in passing are not seen there.
 void Notes::yield(std::vector<Placed>& placed) {
-  std::vector<std::size_t> order(words_.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_partition(order.begin(), order.end(),
-                        [&](std::size_t i) { return stays(words_[i].key, words_[i].places.size()); });
-  for (std::size_t k = 1; k < order.size(); ++k) {
-    Word& word = words_[order[k]];
-    Placed& own = placed[order[k]];
-    const auto course = how_.plan->courses.find(word.key);
-    if (course == how_.plan->courses.end() || !course->second.yields) continue;
-    for (std::size_t n = 0; n < k; ++n) {
-      const Placed& other = placed[order[n]];
-      const Point both = size(word.set) + size(words_[order[n]].set);
-      const Point deep = kNearWords * both - (own.at.center - other.at.center).cwiseAbs();
-      if (!(deep.x() > 0 && deep.y() > 0)) continue;
-      const double within = deep.cwiseQuotient((kNearWords - 0.5) * both).minCoeff();
-      own.strength = std::min(own.strength, 1 - std::min(within, 1.0) * std::min(2 * other.strength, 1.0));
-    }
-    if (own.strength < 1) fade(word.set, own.strength), own.leader *= own.strength;
+  for (std::size_t i = 0; i < words_.size(); ++i) {
+    const auto course = how_.plan->courses.find(words_[i].key);
+    if (course == how_.plan->courses.end()) continue;
+    placed[i].strength = strength(course->second, how_.film);
+    if (placed[i].strength < 1)
+      fade(words_[i].set, placed[i].strength), placed[i].leader *= placed[i].strength;
   }
+}
+
+void Notes::tell_standing(const std::vector<Placed>& placed) const {
+  for (std::size_t i = 0; i < words_.size(); ++i)
+    how_.standing->push_back({words_[i].key, placed[i].at.center, size(words_[i].set),
+                              words_[i].set.color.a / 255.0, stays(words_[i].key, words_[i].places.size())});
 }
 
 void Notes::finish() {
@@ -414,6 +409,7 @@ void Notes::finish() {
   const std::vector<double> tails = this->tails();
   if (!film()) set_apart();
   std::vector<Placed> placed = film() ? planned_places() : still_places();
+  if (how_.standing) return tell_standing(placed);
   if (how_.plan) yield(placed);
   // plates lie over bodies and lines but under arrows, which stay whole; one kind after another is drawn in
   // few batches
@@ -498,7 +494,8 @@ void Notes::offer_places() {
                     std::move(word.places),
                     word.arrow,
                     word.along,
-                    word.set.color.a >= kLegible};
+                    word.set.color.a >= kLegible,
+                    word.ball};
     if (!how_.ranges)
       for (Placing::Candidate& each : offered.places) {
         const Point wanted = each.center;

@@ -69,6 +69,7 @@ class Notes {
     std::optional<std::pair<Point, Point>> arrow;
     std::optional<Hang> hang;
     Point along{0, 0};             // the body that the arrow goes with
+    double ball = 0;               // its radius, where the arrow begins in its middle
     std::vector<Point> outline{};  // convex: of the body that it names, where a leader ends
     int shown = -1;                // of the arrows: that which it names
     std::size_t form = kNoForm;    // among the forms of its kind: that of what it names
@@ -111,11 +112,13 @@ class Notes {
   static Hold hold(const Word& word, const Point& center);
   void offer_places();
   void yield(std::vector<Placed>& placed);
+  void tell_standing(const std::vector<Placed>& placed) const;
   bool covers(const WordKey& key) const;
   const std::vector<std::vector<Point>>& outlines();
   bool on_body(const Point& p);
   double bare(const Point& tail, const Point& tip);
   EasedArrow::Ends eased(const WordKey& key, const Point& tail, const Point& tip, const Point& center) const;
+  double most_growth(const WordKey& key) const;
   bool arrow(const WordKey& key, const Point& tail, const Point& tip, Formula label, Color ink,
              const AroundTail& around = {});
   void stroke(const std::vector<Point>& line, double width, Color color, double weight);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <utility>
 
 #include "draw/page/readings.h"
@@ -218,6 +219,24 @@ std::vector<Color> shades(const Measured& measured, const Palette& colours,
   return all;
 }
 
+// whether two colours would be taken for one
+bool alike(Color a, Color b) {
+  constexpr int kApart = 60;  // of 255, all channels together
+  return std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b) < kApart;
+}
+
+// A line that is alone has the colour of its quantity; where that is another body's, of its own body.
+Color color_of_only_line(const Measured& measured, const sim::SceneInfo& cast, Color of_quantity,
+                         const std::function<Color(int body)>& line_color) {
+  const int body = measured.bodies.size() == 1 ? measured.bodies[0] : -1;
+  if (measured.measures().size() != 1 || body < 0 || !line_color || alike(line_color(body), of_quantity))
+    return of_quantity;
+  for (int i = 0; i < int(cast.bodies.size()); ++i)
+    if (!cast.bodies[std::size_t(i)].fixed && i != body && alike(line_color(i), of_quantity))
+      return line_color(body);
+  return of_quantity;
+}
+
 }  // namespace
 
 Plot empty_plot(const Measured& measured, const Palette& colours, const sim::SceneInfo& cast,
@@ -239,6 +258,8 @@ Plot empty_plot(const Measured& measured, const Palette& colours, const sim::Sce
       series.color = colors[std::size_t(which - measured.bodies.begin())];
       series.quiet = quiet && quiet(line.body);
     }
+    if (line.measure->of != Measure::Of::room)
+      series.color = several ? series.color : color_of_only_line(measured, cast, series.color, line_color);
     // the sum of the others
     if (line.measure->name == "energy" && measures.size() > 1) series.weight = 1.5;
     plot.lines.push_back(std::move(series));

@@ -259,7 +259,7 @@ void share_margins(std::span<PlotArea*> areas) {
   double left = -1e300, right = 1e300;
   for (const PlotArea* area : areas) left = std::max(left, area->left), right = std::min(right, area->right);
   for (PlotArea* area : areas) {
-    for (Point& entry : area->key) entry.x() += left - area->left;
+    for (Point& entry : area->key) entry.x() += std::min(left - area->left, area->key_room);
     area->left = left, area->right = right;
   }
 }

@@ -39,8 +39,8 @@ struct Plot {
   bool dotted = false;             // a dot at each value
   std::vector<Dot> dots;
   std::optional<std::pair<double, double>> range{};  // of the values' axis; none: all there are
-  double negligible = 0;  // smaller values are zero
-  bool placed = false;    // its values are places, of which zero is one like others
+  double negligible = 0;                             // smaller values are zero
+  bool placed = false;  // its values are places, of which zero is one like others
 };
 
 /// The mapping from a plot's values to the page.
@@ -56,6 +56,7 @@ struct PlotArea {
   bool led = false;                                 // whether leaders go from lines' ends to their names
   std::vector<double> heights;                      // page units: of names, one a line
   std::vector<Point> key;  // where each line's entry in a key begins; none: names are beside their lines
+  double key_room = 0;     // page units: from the key to the right edge
 
   Point at(double along, double value) const;
   /// Whether it has a place there.

@@ -45,11 +45,14 @@ double widest(const Plot& plot, double type) {
 // The names in rows of a key, whose type is as large as leaves the axis enough.
 void lay_key(const Plot& plot, const Rect& rect, double title_right, PlotArea& area) {
   const double unit = area.point, count = double(plot.lines.size()), tall = area.bottom - area.top;
-  for (const double smaller : kKeyTypes) {
-    const double type = smaller * kPlotType * unit;
+  // no name is wider than a row
+  const double narrow = (rect.width - (kSample + kAfterSample) * unit) / widest(plot, kPlotType * unit);
+  for (const double each : kKeyTypes) {
+    const double smaller = std::min(each, narrow), type = smaller * kPlotType * unit;
     double row = 0;
     for (const Series& line : plot.lines) row = std::max(row, height_of(line, type));
-    const double column = (kSample + kAfterSample + kKeyGap * smaller) * unit + widest(plot, type);
+    const double sample = (kSample + kAfterSample) * unit, width = sample + widest(plot, type),
+                 column = width + kKeyGap * smaller * unit;
     // rows that begin on the title's line, or under it
     const auto columns = [&](double left) {
       return std::floor((rect.x + rect.width - left + kKeyGap * smaller * unit) / column);
@@ -63,13 +66,15 @@ void lay_key(const Plot& plot, const Rect& rect, double title_right, PlotArea& a
     // tall names begin below the upper edge
     const double first = on_line ? std::max(middle, rect.y + row / 2) : middle + row;
     const double down = std::max(0.0, lower * row + (on_line ? first - middle : 0));
-    if (down > kMostKey * tall && smaller > std::end(kKeyTypes)[-1]) continue;
+    if (down > kMostKey * tall && each > std::end(kKeyTypes)[-1]) continue;
     area.names_type = smaller;
     area.key.clear();
     const auto across = std::size_t(std::ceil(count / rows));
     for (std::size_t i = 0; i < plot.lines.size(); ++i)
       area.key.emplace_back((on_line ? beside : rect.x) + double(i % across) * column,
                             first + double(i / across) * row);
+    const double last = (on_line ? beside : rect.x) + double(across - 1) * column + width;
+    area.key_room = std::max(0.0, rect.x + rect.width - last);
     area.top = std::max(area.top, std::min(area.top + down, area.bottom - kLeastAxis * unit));
     return;
   }

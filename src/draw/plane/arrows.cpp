@@ -74,6 +74,10 @@ void draw_halo(const Point& from, const Point& to, double width, Color room, con
 
 }  // namespace
 
+double growth(const Point& tail, const Point& tip, double weight) {
+  return std::min(1.0, (tip - tail).norm() / (kWhole * kHead * weight));
+}
+
 void offer(const Point& tail, Point tip, const Rect& window, double weight, std::vector<Arrow>& arrows) {
   // one that begins in the window and would leave it has its head a little before the edge: the farther it
   // goes beyond it the more, so that the head does not jump
@@ -94,7 +98,7 @@ void offer(const Point& tail, Point tip, const Rect& window, double weight, std:
     }
     tip = tail + part * (tip - tail);
   }
-  const double grow = std::min(1.0, (tip - tail).norm() / (kWhole * kHead * weight));
+  const double grow = growth(tail, tip, weight);
   if (grow > kSmallest) arrows.push_back({.tail = tail, .tip = tip, .grow = grow, .cut = cut});
 }
 

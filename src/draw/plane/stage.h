@@ -78,6 +78,8 @@ double newton(const sim::SceneInfo& cast);
 /// More springs than these, nets apart, are drawn as lines.
 inline constexpr int kMany = 12;
 
+/// How much of its whole size the head of an arrow has, 0 to 1.
+double growth(const Point& tail, const Point& tip, double weight);
 /// Of an arrow's growth: smaller ones are not drawn.
 inline constexpr double kSmallest = 0.2;
 
