@@ -4,16 +4,8 @@
 #include "sim/force/forces.h"
 #include "sim/force/spring.h"
 #include "sim/math/lie_step.h"
-#include "sim/model/body_motion.h"
 
 namespace obscura::sim {
-
-template <int D>
-Vec<D> place(const State<D>& state, const End<D>& end) {
-  if (end.body < 0) return end.local;
-  const BodyMotion<D> at = body_motion(state, end.body);
-  return at.x + at.arm(end.local);
-}
 
 template <int D>
 double kinetic(const Model<D>& model, const State<D>& state, int body) {
@@ -51,14 +43,9 @@ double joint_spring_energy(const Model<D>& model, const State<D>& state, int joi
   const bool broken = std::size_t(joint) < state.broken.size() && state.broken[std::size_t(joint)];
   if (!it.coil || broken) return 0;
   const auto motion = [&](int body) { return body < 0 ? BodyMotion<D>{} : body_motion(state, body); };
-  const auto angle = [&](int body) -> AngularVec<D> {
-    const int k = body < 0 ? -1 : turning(state, body);
-    return k < 0 ? AngularVec<D>(AngularVec<D>::Zero()) : AngularVec<D>(rounds<D>(state.turn[k]));
-  };
   Row<D> row;
   double c = 0;
-  free_row(it, motion(it.a.body), motion(it.b.body), AngularVec<D>(angle(it.a.body) - angle(it.b.body)), row,
-           c);
+  free_row(it, motion(it.a.body), motion(it.b.body), turn_between(it, state), row, c);
   return 0.5 * it.coil->stiffness * (c - it.coil->rest) * (c - it.coil->rest);
 }
 
@@ -126,7 +113,6 @@ AngularVec<D> angular_momentum(const Model<D>& model, const State<D>& state) {
   return sum;
 }
 
-template Vec<2> place<2>(const State<2>&, const End<2>&);
 template double kinetic<2>(const Model<2>&, const State<2>&, int);
 template double kinetic<2>(const Model<2>&, const State<2>&);
 template double gravity_energy<2>(const Model<2>&, const State<2>&, int);
@@ -138,7 +124,6 @@ template double field_energy<2>(const Model<2>&, const State<2>&, double, std::v
 template Energies energies<2>(const Model<2>&, const State<2>&, const std::vector<Path<2>>&, double);
 template Vec<2> momentum<2>(const Model<2>&, const State<2>&);
 template AngularVec<2> angular_momentum<2>(const Model<2>&, const State<2>&);
-template Vec<3> place<3>(const State<3>&, const End<3>&);
 template double kinetic<3>(const Model<3>&, const State<3>&, int);
 template double kinetic<3>(const Model<3>&, const State<3>&);
 template double gravity_energy<3>(const Model<3>&, const State<3>&, int);

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "sim/model/body_motion.h"
 #include "sim/model/path.h"
 #include "sim/model/snapshot.h"
 #include "sim/model/state.h"
@@ -9,10 +10,6 @@
 namespace obscura::sim {
 
 // The energy of a state. Fixed bodies are part of the room and count nothing.
-
-/// The place of an end of a spring, joint or grip, m.
-template <int D>
-Vec<D> place(const State<D>& state, const End<D>& end);
 
 /// Kinetic energy of one body, J.
 template <int D>

@@ -16,8 +16,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/energy/energy.h"
 #include "sim/force/spring.h"
+#include "sim/model/body_motion.h"
 
 namespace obscura::sim {
 
@@ -69,14 +69,9 @@ void BondLoads<D>::push(const State<D>& state, double t) {
     stand(state, motions_);
     forces_.apply(t, motions_, steady_);
   }
-  const auto velocity = [&](const End<D>& end) -> Vec<D> {
-    if (end.body < 0) return Vec<D>::Zero();
-    const BodyMotion<D> at = body_motion(state, end.body);
-    return at.velocity(at.arm(end.local));
-  };
   for (const Spring<D>& s : model_.springs) {
     const Vec<D> a = place(state, s.a), b = place(state, s.b);
-    const Vec<D> force = pull<D>(law(s), a, velocity(s.a), b, velocity(s.b));
+    const Vec<D> force = pull<D>(law(s), a, velocity(state, s.a), b, velocity(state, s.b));
     add(steady_, s.a.body, a, force), add(steady_, s.b.body, b, -force);
   }
   for (int i = 0; i < int(state.grips.size()); ++i) {
@@ -84,7 +79,8 @@ void BondLoads<D>::push(const State<D>& state, double t) {
     if (held.body < 0) continue;
     const auto hand = paths_[i].at(t);
     const Vec<D> a = place(state, held);
-    add(steady_, held.body, a, pull<D>(law(model_.mice[i]), a, velocity(held), hand.place, hand.velocity));
+    add(steady_, held.body, a,
+        pull<D>(law(model_.mice[i]), a, velocity(state, held), hand.place, hand.velocity));
   }
   for (int i = 0; i < int(state.joint_forces.size()); ++i) {
     const Joint<D>& joint = model_.joints[i];
@@ -314,7 +310,8 @@ bool BondLoads<D>::break_overloaded(State<D>& state, const Composite& it, const 
     const int k = it.bonds[b];
     const Bond<D>& bond = model_.bonds[k];
     Eigen::VectorXd all(rows);
-    for (int r = 0; r < rows; ++r) all[r] = load(rows * b + r, 0) + load(rows * b + r, 1) / bond.impact_duration;
+    for (int r = 0; r < rows; ++r)
+      all[r] = load(rows * b + r, 0) + load(rows * b + r, 1) / bond.impact_duration;
     loads_[k] = std::sqrt(all.squaredNorm());
     if (loads_[k] > bond.strength) state.intact[k] = 0, any = true;
   }

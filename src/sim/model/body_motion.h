@@ -23,6 +23,22 @@ BodyMotion<D> body_motion(const State<D>& state, int body) {
   return at;
 }
 
+/// Where a point of a body, or a place of the room, is, m.
+template <int D>
+Vec<D> place(const State<D>& state, const End<D>& end) {
+  if (end.body < 0) return end.local;
+  const BodyMotion<D> at = body_motion(state, end.body);
+  return at.x + at.arm(end.local);
+}
+
+/// And how it moves, m/s.
+template <int D>
+Vec<D> velocity(const State<D>& state, const End<D>& end) {
+  if (end.body < 0) return Vec<D>::Zero();
+  const BodyMotion<D> at = body_motion(state, end.body);
+  return at.velocity(at.arm(end.local));
+}
+
 /// A body, of this orientation, after h s at its velocity.
 template <int D>
 BodyMotion<D> ahead(BodyMotion<D> at, const Orientation<D>& turn, double h) {

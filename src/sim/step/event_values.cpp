@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "sim/force/spring.h"
+#include "sim/model/body_motion.h"
 #include "sim/step/events.h"
 #include "sim/step/stepper.h"
 
@@ -54,14 +55,6 @@ double read(const Instant<D>& at, Reading::Of of) {
   }
 }
 
-// how a point of a body, or a place of the room, is and moves
-template <int D>
-std::pair<Vec<D>, Vec<D>> place_and_velocity(const State<D>& state, const End<D>& end) {
-  if (end.body < 0) return {end.local, Vec<D>(Vec<D>::Zero())};
-  const BodyMotion<D> at = body_motion(state, end.body);
-  return {at.x + at.arm(end.local), at.velocity(at.arm(end.local))};
-}
-
 }  // namespace
 
 // a quantity in a state; of forces how long the sum of what it has from all that touches or holds it is
@@ -83,8 +76,8 @@ double Events<D>::read(const State<D>& state, const Reading& of) {
   if (of.of == spring_force) {
     for (const Spring<D>& spring : model.springs) {
       if (spring.a.body != body && spring.b.body != body) continue;
-      const auto [a, va] = place_and_velocity(state, spring.a);
-      const auto [b, vb] = place_and_velocity(state, spring.b);
+      const Vec<D> a = place(state, spring.a), va = velocity(state, spring.a);
+      const Vec<D> b = place(state, spring.b), vb = velocity(state, spring.b);
       sum += (spring.a.body == body ? 1 : -1) * pull<D>(law(spring), a, va, b, vb);
     }
   } else if (of.of == joint_force) {

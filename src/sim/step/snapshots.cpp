@@ -167,11 +167,7 @@ void hold(const Model<D>& model, const State<D>& state, Snapshot& now) {
     const auto at = [&](int body) -> const BodyMotion<D>& {
       return body < 0 ? room : motions[std::size_t(body)];
     };
-    const AngularVec<D> turn = joint.turn_between([&](int body) {
-      const int k = body < 0 ? -1 : turning(state, body);
-      return k < 0 ? AngularVec<D>(AngularVec<D>::Zero()) : AngularVec<D>(rounds<D>(state.turn[k]));
-    });
-    rows(joint, at(joint.a.body), at(joint.b.body), {turn, wound(state, i)}, row, error, motions);
+    rows(joint, i, state, motions, row, error);
     if (one_sided(joint)) now.joints[i].slack = std::max(0.0, error[0]);
     const Wrench<D> unit = load_on_a(joint, row[0], at(joint.a.body), at(joint.b.body));
     const double size = unit.f.squaredNorm() + unit.n.squaredNorm();
@@ -212,19 +208,13 @@ void hold(const Model<D>& model, const State<D>& state, Snapshot& now) {
       holds(f, body, along, angular);
     });
     if (drag == 0) continue;
-    hold_drag<D>({joint, at(joint.a.body), at(joint.b.body), turn, motions, wound(state, i)}, row[0]);
+    hold_drag<D>(
+        {joint, at(joint.a.body), at(joint.b.body), turn_between(joint, state), motions, wound(state, i)},
+        row[0]);
     each_side(row[0], [&](int body, const Vec<D>& along, const AngularVec<D>& angular) {
       holds(drag, body, along, angular);
     });
   }
-}
-
-// how a point of a body, or a place of the room, moves
-template <int D>
-Vec<D> velocity(const State<D>& state, const End<D>& end) {
-  if (end.body < 0) return Vec<D>::Zero();
-  const BodyMotion<D> at = body_motion(state, end.body);
-  return at.velocity(at.arm(end.local));
 }
 
 }  // namespace

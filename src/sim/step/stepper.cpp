@@ -370,9 +370,9 @@ void Stepper<D>::plan(const State<D>& state) {
 template <int D>
 bool Stepper<D>::integrate(State<D>& state, double t, double h) {
   bool sound = true;
-  for (const Block& block : flying_) sound = fly(state, block, t, h) && sound;
-  for (const Block& block : spinning_) sound = spin(state, block, t, h) && sound;
-  return tied(state, t, h) && sound;
+  for (const Block& block : flying_) sound = step_flying(state, block, t, h) && sound;
+  for (const Block& block : spinning_) sound = step_spins(state, block, t, h) && sound;
+  return step_tied(state, t, h) && sound;
 }
 
 // whether every number is one, and none ran away
@@ -381,15 +381,19 @@ bool Stepper<D>::sound(const State<D>& state) const {
   const double limit = kFarthest * model_.scale;
   std::int64_t sound = within(state.x[0].data(), D * int(state.x.size()), limit) |
                        within(state.v[0].data(), D * int(state.v.size()), limit);
-  for (std::size_t k = 0; k < state.turn.size(); ++k) {
-    sound |= within(state.turn[k].data(), int(state.turn[k].size()), kFarthest * kFarthest);
-    sound |= within(state.spin[k].data(), kAngular<D>, spin_limits_[k]);
-  }
+  for (std::size_t k = 0; k < state.turn.size(); ++k) sound |= turn_within_limits(state, k);
   return sound >= 0;
 }
 
+// below zero if an orientation or a spin is no number, or ran away
 template <int D>
-bool Stepper<D>::fly(State<D>& state, Block block, double t, double h) {
+std::int64_t Stepper<D>::turn_within_limits(const State<D>& state, std::size_t k) const {
+  return within(state.turn[k].data(), int(state.turn[k].size()), kFarthest * kFarthest) |
+         within(state.spin[k].data(), kAngular<D>, spin_limits_[k]);
+}
+
+template <int D>
+bool Stepper<D>::step_flying(State<D>& state, Block block, double t, double h) {
   const std::size_t n = std::size_t(D) * block.count;
   double* const x = state.x[block.first].data();
   const std::span<double> v(state.v[block.first].data(), n);
@@ -413,7 +417,7 @@ bool Stepper<D>::fly(State<D>& state, Block block, double t, double h) {
 }
 
 template <int D>
-bool Stepper<D>::spin(State<D>& state, Block block, double t, double h) {
+bool Stepper<D>::step_spins(State<D>& state, Block block, double t, double h) {
   const std::size_t n = std::size_t(kAngular<D>) * block.count;
   const std::span<double> w(w_.data(), n), d(d_.data(), n);
   std::fill(d.begin(), d.end(), 0.0);
@@ -430,18 +434,17 @@ bool Stepper<D>::spin(State<D>& state, Block block, double t, double h) {
     const int at = kAngular<D> * i;
     const int pieces = wobbles<D>(inertia_[k]) ? pieces_of_turn<D>(state.spin[k], h) : 1;
     if (pieces > 1)
-      spin(state, k, pieces, t, h);
+      step_spins(state, k, pieces, t, h);
     else
       store_spin<D>(state, k, Orientation<D>(state.turn[k]), d.data() + at, base_[i], w.data() + at);
-    sound |= within(state.turn[k].data(), int(state.turn[k].size()), kFarthest * kFarthest);
-    sound |= within(state.spin[k].data(), kAngular<D>, spin_limits_[k]);
+    sound |= turn_within_limits(state, std::size_t(k));
   }
   return sound >= 0;
 }
 
 // the turn of one body in so many pieces
 template <int D>
-void Stepper<D>::spin(State<D>& state, int k, int pieces, double t, double h) {
+void Stepper<D>::step_spins(State<D>& state, int k, int pieces, double t, double h) {
   AngularVec<D> base;
   std::array<double, kAngular<D>> d, w;
   for (int i = 0; i < pieces; ++i) {
@@ -454,17 +457,14 @@ void Stepper<D>::spin(State<D>& state, int k, int pieces, double t, double h) {
 }
 
 template <int D>
-bool Stepper<D>::tied(State<D>& state, double t, double h) {
+bool Stepper<D>::step_tied(State<D>& state, double t, double h) {
   dynamics_.step(integrate_, state, t, h, stages_);
   if (!state.work.empty()) state.work[0] += dynamics_.work();
   const double limit = kFarthest * model_.scale;
   std::int64_t sound = 0;
   const auto look = [&](int body) {
     sound |= within(state.x[body].data(), D, limit) | within(state.v[body].data(), D, limit);
-    if (const int k = turning(state, body); k >= 0) {
-      sound |= within(state.turn[k].data(), int(state.turn[k].size()), kFarthest * kFarthest);
-      sound |= within(state.spin[k].data(), kAngular<D>, spin_limits_[k]);
-    }
+    if (const int k = turning(state, body); k >= 0) sound |= turn_within_limits(state, std::size_t(k));
   };
   for (const int body : dynamics_.bodies()) {
     look(body);

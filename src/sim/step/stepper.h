@@ -88,10 +88,11 @@ class Stepper {
   void plan(const State<D>& state);
   bool integrate(State<D>& state, double t, double h);
   bool sound(const State<D>& state) const;
-  bool fly(State<D>& state, Block block, double t, double h);
-  bool spin(State<D>& state, Block block, double t, double h);
-  void spin(State<D>& state, int k, int pieces, double t, double h);
-  bool tied(State<D>& state, double t, double h);
+  std::int64_t turn_within_limits(const State<D>& state, std::size_t k) const;
+  bool step_flying(State<D>& state, Block block, double t, double h);
+  bool step_spins(State<D>& state, Block block, double t, double h);
+  void step_spins(State<D>& state, int k, int pieces, double t, double h);
+  bool step_tied(State<D>& state, double t, double h);
 
   const Model<D>& model_;
   std::vector<Path<D>> paths_;

@@ -42,16 +42,21 @@ int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
 }
 
 template <int D>
-int rows(const Joint<D>& joint, std::size_t number, const State<D>& state,
-         std::type_identity_t<std::span<const BodyMotion<D>>> at, Row<D>* out, double* off) {
-  static const BodyMotion<D> room;
-  const auto side = [&](int body) -> const BodyMotion<D>& { return body < 0 ? room : at[std::size_t(body)]; };
-  const AngularVec<D> turn = joint.turn_between([&](int body) {
+AngularVec<D> turn_between(const Joint<D>& joint, const State<D>& state) {
+  return joint.turn_between([&](int body) {
     const int k = body < 0 ? -1 : turning(state, body);
     return k < 0 ? AngularVec<D>(AngularVec<D>::Zero())
                  : AngularVec<D>(rounds<D>(state.turn[std::size_t(k)]));
   });
-  return rows(joint, side(joint.a.body), side(joint.b.body), {turn, wound(state, number)}, out, off, at);
+}
+
+template <int D>
+int rows(const Joint<D>& joint, std::size_t number, const State<D>& state,
+         std::type_identity_t<std::span<const BodyMotion<D>>> at, Row<D>* out, double* off) {
+  static const BodyMotion<D> room;
+  const auto side = [&](int body) -> const BodyMotion<D>& { return body < 0 ? room : at[std::size_t(body)]; };
+  return rows(joint, side(joint.a.body), side(joint.b.body),
+              {turn_between(joint, state), wound(state, number)}, out, off, at);
 }
 
 template <int D>
@@ -182,6 +187,7 @@ void join_as(Joint<D>& joint, const Made<D>& so) {
 }
 
 template const JointEquations<2>& equations<2>(JointKind);
+template AngularVec<2> turn_between<2>(const Joint<2>&, const State<2>&);
 template int rows<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const JointTurn<2>&,
                      Row<2>*, double*, std::span<const BodyMotion<2>>);
 template int rows<2>(const Joint<2>&, std::size_t, const State<2>&, std::span<const BodyMotion<2>>, Row<2>*,
@@ -194,6 +200,7 @@ template Wrench<2> coil_load<2>(const Joint<2>&, const BodyMotion<2>&, const Bod
 template std::optional<int> follow_ropes<2>(const Model<2>&, State<2>&, std::span<const BodyMotion<2>>,
                                             double);
 template const JointEquations<3>& equations<3>(JointKind);
+template AngularVec<3> turn_between<3>(const Joint<3>&, const State<3>&);
 template int rows<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const JointTurn<3>&,
                      Row<3>*, double*, std::span<const BodyMotion<3>>);
 template int rows<3>(const Joint<3>&, std::size_t, const State<3>&, std::span<const BodyMotion<3>>, Row<3>*,

@@ -95,6 +95,10 @@ int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
          const std::type_identity_t<JointTurn<D>>& turn, Row<D>* out, double* off,
          std::type_identity_t<std::span<const BodyMotion<D>>> all = {});
 
+/// Its relative angle in a state, Joint::turn_between().
+template <int D>
+AngularVec<D> turn_between(const Joint<D>& joint, const State<D>& state);
+
 /// The same of a joint, by its number, of the model of a state. `at`: pose and velocity of every body, or of
 /// its bodies, by number.
 template <int D>
