@@ -161,8 +161,7 @@ void rub(const Fields& fields, double friction, const std::vector<sim::Vec<D>>& 
     };
     for (std::size_t i = 0; i < it.around.size(); ++i) {
       if (it.around[i] == 0) continue;
-      const double sign = it.around[i] > 0 ? 1 : -1, turn = sign * sim::angle_between(piece(i), piece(i + 1));
-      it.wrap += turn < 0 ? turn + 2 * std::numbers::pi : turn;
+      it.wrap += sim::wrap_between(piece(i), piece(i + 1), it.around[i]);
     }
   }
 }

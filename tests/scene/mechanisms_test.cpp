@@ -326,6 +326,40 @@ TEST(Pulley, ARopeThatIsWoundUpToItsEndEndsTheRun) {
   }
 }
 
+// A bob without gravity unwinds a string, of which l0 is free and W0 rad are on the post, at its speed v:
+//   (l0 + R phi) phi' = v,  so the string is straight after  t = (l0 W0 + R W0^2 / 2) / v
+// and leaves the post, where the run ends.
+TEST(Pulley, AStringThatLeavesItsPostEndsTheRun) {
+  constexpr double kRadius = 0.3, kFree = 1, kWrap = 1, kSpeed = 1;
+  const double when = (kFree * kWrap + 0.5 * kRadius * kWrap * kWrap) / kSpeed, c = std::cos(kWrap),
+               s = std::sin(kWrap);
+  const std::string fixed = "fixed = true\n", pin = "[[joint]]\ntype = 'pin'\nbetween = ['post', 'room']\n";
+  for (const Manner& manner : kManners) {
+    for (const double side : {-1, 1}) {
+      for (const auto& [post, rope] :
+           {std::pair(fixed, ""), std::pair(pin, ""), std::pair(fixed, "friction = 0.2\n")}) {
+        if (manner.name == "iterative" && *rope) continue;  // by direct alone
+        const TextRun scene(
+            plane_without_walls({"", manner.keys + "\nrate = 600"}, "gravity = [0, 0]") +
+            fmt::format(
+                "[[ball]]\nname = 'post'\nradius = {}\nmass = 1e-3\nposition = [0, 0]\n{}[[particle]]\nname "
+                "= 'bob'\n"
+                "position = [{}, {}]\nvelocity = [{}, {}]\n[[joint]]\nname = 'string'\ntype = 'pulley'\n"
+                "between = ['bob', [{}, 3]]\nover = ['post']\n{}[contact]\nignore = [['bob', 'post']]\n",
+                kRadius, post, side * (kFree * s - kRadius * c), -kRadius * s - kFree * c, -side * kSpeed * c,
+                -kSpeed * s, -side * kRadius, rope));
+        const auto before = scene.run->at(*sim::parse_rational("1.14"));
+        EXPECT_FALSE(std::holds_alternative<sim::Trouble>(before)) << manner.name << side << rope;
+        const auto outcome = scene.run->at({2, 1});
+        const auto* trouble = std::get_if<sim::Trouble>(&outcome);
+        ASSERT_TRUE(trouble) << manner.name << side << post << rope;
+        EXPECT_NE(trouble->what.find("leaves it"), std::string::npos) << trouble->what;
+        EXPECT_NEAR(trouble->time, when, 0.004) << manner.name << side << post << rope;
+      }
+    }
+  }
+}
+
 // The bob of a swinging Atwood machine comes to the rim of its wheel at 0.545 s, on a way that bends: the run
 // ends there at every rate, and does not go on through the rim.
 TEST(Pulley, ABobThatSwingsOntoTheRimEndsTheRun) {

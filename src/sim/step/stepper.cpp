@@ -303,11 +303,14 @@ void Stepper<D>::note_ropes(const State<D>& state) {
 template <int D>
 std::optional<Trouble> Stepper<D>::follow_pulleys(State<D>& state, double t, double done) const {
   if (!pulleys_) return {};
-  const std::optional<int> ended = follow_ropes(model_, state, before_piece_, done);
+  const std::optional<EndOfRope> ended = follow_ropes(model_, state, before_piece_, done);
   if (!ended) return {};
-  return Trouble{t, model_.joints[std::size_t(*ended)].name, "straight piece",
-                 "has no length left: its end comes to what the rope runs over",
-                 "end the run before, or release the rope by a condition"};
+  const std::string& name = model_.joints[std::size_t(ended->joint)].name;
+  const char* const advice = "end the run before, or release the rope by a condition";
+  if (ended->left)
+    return Trouble{t, name, "rope", "is straight at a wheel and leaves it, which is not followed", advice};
+  return Trouble{t, name, "straight piece", "has no length left: its end comes to what the rope runs over",
+                 advice};
 }
 
 template <int D>

@@ -136,14 +136,21 @@ Wound wound(const State<D>& state, std::size_t joint) {
   return joint < state.wound.size() ? state.wound[joint] : Wound{};
 }
 
+/// A joint whose rope cannot go on, and whether that is as it has left a wheel.
+struct EndOfRope {
+  int joint = 0;
+  bool left = false;
+};
+
 /// Follows State::wound to where ropes are now, at the end of a step: from where they were by less than half
-/// a round. Returns the first joint whose rope will have no straight piece left within the next step, as its
-/// end comes to the rim of a wheel, or is tight and comes to a point that it runs over; or was on a rim since
-/// its bodies stood as in `begun`, by number, `done` s ago.
+/// a round. Returns the first joint whose rope cannot go on: it will have no straight piece left within the
+/// next step, as its end comes to the rim of a wheel, or is tight and comes to a point that it runs over; or
+/// its end was on a rim since its bodies stood as in `begun`, by number, `done` s ago; or it is tight and has
+/// left a wheel.
 template <int D>
-std::optional<int> follow_ropes(const Model<D>& model, State<D>& state,
-                                std::type_identity_t<std::span<const BodyMotion<D>>> begun = {},
-                                double done = 0);
+std::optional<EndOfRope> follow_ropes(const Model<D>& model, State<D>& state,
+                                      std::type_identity_t<std::span<const BodyMotion<D>>> begun = {},
+                                      double done = 0);
 
 /// What breaks with what is broken: all pulleys of one rope, and a gear with either of its joints.
 template <int D>

@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -146,6 +147,13 @@ inline std::optional<Wound> on_wheels(const JointPose<2>& at, double h) {
   return now;
 }
 
+/// How far a rope that comes to a wheel by one direction and leaves it by another is wrapped around it, rad,
+/// less than a round. `offset`: Winding::offset.
+inline double wrap_between(const Vec<2>& before, const Vec<2>& after, double offset) {
+  const double turn = (offset > 0 ? 1 : -1) * angle_between(before, after);
+  return turn < 0 ? turn + 2 * std::numbers::pi : turn;
+}
+
 /// The places of a rope in their order, from a to b, with what it runs over between them.
 template <int D>
 class RopePlaces {
@@ -226,18 +234,23 @@ void hold_rope(const JointPose<D>& at, Row<D>* J, double* C) {
   J[0] = std::move(row);
 }
 
-/// Whether a rope that is tight comes to an end within a time h, s: a place of it to the next.
+/// Whether a rope has no slack.
 template <int D>
-bool comes_to_its_end(const JointPose<D>& at, double h) {
+bool is_tight(const JointPose<D>& at) {
   constexpr double kTight = 1e-6;  // of its length
-  const RopePlaces<D> places(at);
-  bool any = false;
-  for (int i = 0; i + 1 < places.size(); ++i) any = any || places.meet(i, h);
-  if (!any) return false;
   Row<D> row;
   double slack = 0;
   hold_rope(at, &row, &slack);
   return slack <= kTight * at.joint.length;
+}
+
+/// Whether a rope that is tight comes to an end within a time h, s: a place of it to the next.
+template <int D>
+bool comes_to_its_end(const JointPose<D>& at, double h) {
+  const RopePlaces<D> places(at);
+  bool any = false;
+  for (int i = 0; i + 1 < places.size(); ++i) any = any || places.meet(i, h);
+  return any && is_tight(at);
 }
 
 /// Whether the rope of a joint slides over things with friction.
@@ -267,6 +280,35 @@ double rope_wrap(const JointPose<D>& at) {
     wrap += sign(joint.around.back()) * angle_between(joint.on_b.start, before, at.wound.b);
   }
   return std::max(0.0, wrap);
+}
+
+/// The least that a rope with friction is wrapped around a wheel at its ends, rad: below zero it has left
+/// that.
+inline double least_wrap(const JointPose<2>& at) {
+  const Joint<2>& joint = at.joint;
+  const RopePlaces<2> places(at);
+  const int last = int(joint.around.size()) - 1;
+  double least = std::numeric_limits<double>::infinity();
+  for (const int k : {0, last}) {
+    const double offset = joint.around[std::size_t(k)];
+    if (offset == 0) continue;
+    const double sign = offset > 0 ? 1 : -1;
+    double wrap = 2 * std::numbers::pi * joint.whole_turns +
+                  wrap_between(k == 0 ? joint.on_a.start : places.piece(k).direction,
+                               k == last ? joint.on_b.start : places.piece(k + 1).direction, offset);
+    if (k == 0) wrap -= sign * at.wound.a;
+    if (k == last) wrap += sign * at.wound.b;
+    least = std::min(least, wrap);
+  }
+  return least;
+}
+
+/// How far a rope is wrapped around the wheel between two pieces of it that wind on it, rad. It ends where
+/// the other begins.
+inline double wrap_between(const JointPose<2>& comes, const JointPose<2>& leaves) {
+  const double offset = comes.joint.on_b.offset, sign = offset > 0 ? 1 : -1;
+  return wrap_between(comes.joint.on_b.start, leaves.joint.on_a.start, offset) +
+         sign * (leaves.wound.a - comes.wound.b);
 }
 
 /// The row of the drag of a rope with friction; its force is the tension at a less that at b, N. Returns
