@@ -443,7 +443,7 @@ std::vector<Key> world_rows() {
        .doc = "Makes a joint or a spring that is not `joined` yet, by its name; or holds together two as they stand: bodies, or a body and a wall or `\"room\"`.", .example = "[\"bullet\", \"block\"]"},
       {.path = "when.do.stick", .form = boolean, .absent = "another action", .doc = "Those that have come to touch are held together as they stand; with `again` each two that do.", .example = "true"},
       {.path = "when.do.set", .form = text, .absent = "another action",
-       .doc = "Sets a key from now on, as `--set` writes it: of a motor (`flipper.motor.speed`), a force (`wind.components`, `room.wind`), `room.gravity`, the `friction` of a joint, `stiffness`, `damping` or `rest_length` of a spring, or `fixed`, `velocity`, `spin`, `mass`, `charge`, `drag`, `quadratic_drag` or `surface_speed` of a body.", .example = "\"piston.motor.speed\""},
+       .doc = "Sets a key from now on, as `--set` writes it: of a motor (`flipper.motor.speed`), a force (`wind.components`, `room.wind`), `room.gravity`, the `friction` of a joint (not of a pulley), `stiffness`, `damping` or `rest_length` of a spring, or `fixed`, `velocity`, `spin`, `mass`, `charge`, `drag`, `quadratic_drag` or `surface_speed` of a body.", .example = "\"piston.motor.speed\""},
       {.path = "when.do.to", .form = any, .absent = "it sets nothing", .doc = "The value that it sets. Of a `velocity` or a `spin` also expressions of what was just before, as in `value`: `[\"1.2*ship.vx\", \"1.2*ship.vy\"]`; angles there are radians, and of a spin the result is degrees a second.", .example = "0"},
       {.path = "when.do.stop", .form = boolean, .absent = "another action", .doc = "Everything stands still from now on, and the film ends.", .example = "true"},
 

@@ -312,8 +312,8 @@ sim::World<D> built(const Node& top, const std::vector<CopySet>& copy_sets, cons
   scene.film.charts = charts<D>(top, roster, world, complaints);
   refuse_low_plots(top, scene.figure, scene.film, scene.look.type_scale, complaints);
 
-  // overlaps may follow from other errors: report them only if there are none
-  if (complaints.none() && model.collision != sim::Collision::handout)
+  // overlaps may follow from other errors: report them only if there are none, and once
+  if (events && complaints.none() && model.collision != sim::Collision::handout)
     refuse_overlaps(roster, world, complaints);
   return world;
 }

@@ -305,6 +305,12 @@ TEST(Diagnostics, OverlapsNameThePairAndTheDepth) {
           "a.toml:10:12: 'a' and 'b' overlap by 0.1 m at the start; move them apart, or let them be pushed: "
           "[physics] "
           "overlap = \"separate\"");
+  // not at an event, whose setting has nothing to do with it
+  refused(kContact + pair +
+              "position = [2.9, 2.2]\n[[when]]\ntime = 1\ndo = { set = 'room.gravity', to = [0, 1] }",
+          "a.toml:10:12: 'a' and 'b' overlap by 0.1 m at the start; move them apart, or let them be pushed: "
+          "[physics] "
+          "overlap = \"separate\"");
   refused(
       kContact + "[[ball]]\nname = \"ball\"\nposition = [1, 1]\ncopies = { count = 3, offset = [0.3, 0] }",
       "a.toml:5:12: 'ball[0]' and 'ball[1]' overlap by 0.1 m at the start, and another pair does; move them "

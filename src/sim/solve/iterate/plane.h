@@ -126,7 +126,7 @@ class PlaneIterative final : public Iterative<2> {
   double safe_fraction(int body, const plane::Pose& from, const Motion& way, double begun, double h,
                        bool walls) const;
   Motion mean_way(int body, double h) const;
-  Motion course(int body, double h);
+  Motion way_to_first_hit(int body, double h);
   bool sinks(int body, const Motion& way, double h) const;
   bool fast(int body, const Motion& way) const;
 

@@ -45,7 +45,7 @@ void PlaneIterative::place_bodies(StepPart<D> part) {
     return impacts_.last(i) >= 0 || h * h * (o.x * o.x + o.y * o.y) > far * far;
   };
   for (int i = 0; i < n; ++i)
-    if (moving_[i].im != 0 && alone(i)) move(i, course(i, h));
+    if (moving_[i].im != 0 && alone(i)) move(i, way_to_first_hit(i, h));
   each(workers(), n, kBodyPiece, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const Motion& v = moving_[i];
@@ -67,8 +67,9 @@ plane::Motion PlaneIterative::mean_way(int i, double h) const {
           dx.w + half * (v.w - (o.w + dv.w)), 0};
 }
 
-// the way of a body in the step, of one too that is struck or fast
-plane::Motion PlaneIterative::course(int i, double h) {
+// The way of a body in the substep. One that is fast goes up to its first hit (conservative advancement), and
+// has the velocity it had before.
+plane::Motion PlaneIterative::way_to_first_hit(int i, double h) {
   const Motion &v = moving_[i], &o = old_[i], &dv = dv_[i];
   const double when = impacts_.first(i);
   Motion d;
