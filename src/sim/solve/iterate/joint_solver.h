@@ -172,6 +172,13 @@ class JointSolver final : public System {
     }
   }
 
+  /// Gives the bodies a motion that joints let them have, and that leaves still only rows along which none
+  /// lets them move, and hardly any others. After compute_rows(); the caller writes velocities anew.
+  void try_motion();
+  /// Contacts along whose normals joints leave nothing to move: the forces that they bear beside the joints,
+  /// N, which bear so much less, in what keep() writes. After find_end_forces().
+  void share_loads(std::span<const JointResponse> contacts, std::span<double> forces, double h);
+
   /// The work of kinematic bodies by a unit of impulse along a row and by the joints' reactions to it, J.
   double given(const JointResponse& response) const;
 
@@ -180,7 +187,8 @@ class JointSolver final : public System {
   /// at once, as joints hold them, where these are struck. Found once a substep, after keep_row_speeds().
   std::span<const JointResponse> reached_ends(int component);
   /// J v of a row by the velocities of body_motion(), m/s or rad/s.
-  double row_speed(const JointResponse& response) const { return speed(response.row, at_); }
+  double row_speed(const JointResponse& response) const { return row_speed(response.row); }
+  double row_speed(const Row<D>& row) const { return speed(row, at_); }
   /// The work of kinematic bodies by a unit of impulse at an end, J.
   double given_at_end(const JointResponse& end) const { return given(end.row) + given(end); }
 
@@ -474,6 +482,9 @@ class JointSolver final : public System {
   std::vector<double> free_motors_;
   std::vector<double> end_rates_;
   std::vector<Wrench<D>> end_loads_;  // of each joint of held_ at the end of the step, on a
+  std::vector<double> end_forces_;    // of each row there
+  std::vector<double> loads_;         // of each row, with contacts; N or N m
+  std::vector<double> relief_;        // of each row: what contacts that it locks bear in its place
   std::vector<Bounded> bounded_;      // the first `active_` are in use
   std::size_t active_ = 0;
   std::vector<int> by_component_;     // numbers of them by component, those of component -1 first

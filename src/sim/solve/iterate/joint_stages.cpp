@@ -537,7 +537,7 @@ void JointSolver<D>::find_end_forces(const State<D>& state, double t) {
   ways_ = rhs_;
   for (std::size_t r = 0; r < rows_.size(); ++r) push_rates(rows_[r], ways_[r], end_rates_);
   solve_forces(t, end_rates_);
-  for (std::size_t r = 0; r < rows_.size(); ++r) rhs_[r] += ways_[r];
+  for (std::size_t r = 0; r < rows_.size(); ++r) end_forces_[r] = rhs_[r] += ways_[r];
   for (std::size_t k = 0; k < held_.size(); ++k) {
     end_loads_[k] = {};
     const int first = factors_.first(int(k));
