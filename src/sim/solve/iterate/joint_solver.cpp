@@ -320,7 +320,7 @@ void JointSolver<D>::collect_bounded(double h) {
     if (active_ == bounded_.size()) bounded_.emplace_back();
     Bounded& b = bounded_[active_];
     b.joint = i, b.load = load;
-    b.impulse = b.at_end = b.put = 0, b.target = 0;
+    b.impulse = b.at_end = b.put = 0, b.target = 0, b.put_back = false;
 
     Row<D> out[kMostHeld<D>];
     double offs[kMostHeld<D>];

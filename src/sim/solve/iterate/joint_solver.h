@@ -252,6 +252,7 @@ class JointSolver final : public System {
     double effective_mass = 0;               // effective mass, with the joints' reaction
     double impulse = 0;
     double put = 0;                     // kg m or kg m^2: pseudo-impulse of the position projection
+    bool put_back = false;              // by it, from beyond its end
     double at_end = 0, rate_there = 0;  // of that what the end of the step gave; of a motor its speed before
     double ends = 0;                    // rad or m: of a motor, the coordinate that its speed leads to
     double begun_drive_work = 0;  // work of kinematic bodies by a unit of impulse, at the start of the step
@@ -382,7 +383,10 @@ class JointSolver final : public System {
   void save(const State<D>& state);
   void restore(State<D>& state) const;
   void put_motors();
-  void put_ends(double h, bool beyond);
+  enum class PutEnds { held, beyond, again };
+  void put_ends(double h, PutEnds which);
+  bool ends_strayed() const;
+  double close_joints();
   double position_error();
   bool near() const;
   void project_positions(double h);
@@ -402,6 +406,8 @@ class JointSolver final : public System {
   std::vector<Orientation<D>> turn_;
   std::vector<BodyMotion<D>> begun_at_;  // before they are put back
   std::vector<Orientation<D>> begun_turn_;
+  std::vector<BodyMotion<D>> again_at_;  // before ends are put again
+  std::vector<Orientation<D>> again_turn_;
   std::vector<Vec<D>> unprojected_;  // centres before the positions were projected
   Response<D> response_;
 
