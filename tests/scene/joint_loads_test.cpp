@@ -39,6 +39,24 @@ TEST(JointLoads, AMotorAgainstAStopIsBorneAtRest) {
   }
 }
 
+// A pinion lifts a rack to its limit by a motor that then stands still, and dry friction holds it as the
+// limit does: what the teeth do not bear of the rack's weight the limit does. Of 8.3 N it told a half.
+TEST(JointLoads, ALimitBearsWhatAStalledMotorAndFrictionLeaveIt) {
+  for (const Manner& way : kManners) {
+    const TextRun run("[room]\nsize = [8, 8]\nwalls = 'none'\n" + way.keys +
+                      "\n[[ball]]\nname = 'pinion'\nradius = 0.9\nmass = 2\nposition = [2.2, 4]\n"
+                      "[[box]]\nname = 'rack'\nsize = [0.2, 2]\nmass = 3\nposition = [3.2, 4]\n"
+                      "[[joint]]\nname = 'axle'\ntype = 'pin'\nbetween = ['pinion', 'room']\nfriction = 2\n"
+                      "motor = { speed = 100, most = 36 }\n"
+                      "[[joint]]\nname = 'rail'\ntype = 'slider'\nbetween = ['rack', 'room']\naxis = [0, 1]\n"
+                      "limits = [-0.5, 0.7]\n"
+                      "[[joint]]\nname = 'teeth'\ntype = 'gear'\njoints = ['rail', 'axle']\nratio = 0.9\n");
+    const sim::Snapshot now = run.at(3);
+    EXPECT_NEAR(now.bodies[1].position.y(), 4.7, 1e-9) << way.name;
+    EXPECT_NEAR(now.joints[1].force.y() + now.joints[2].force.y(), 3 * kFreeFall, 1e-6) << way.name;
+  }
+}
+
 // What is heavy stands on light wheels, or hangs from light links over a post, by the solver for many bodies
 // too: from the first step on they bear it. In turns with the joints, contacts that saw the light body alone
 // found what it bears by its share of all the mass: 154 to 6008 N instead of 4905, and weights fell at first.

@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 
+#include "sim/energy/divergence_monitor.h"
 #include "sim/jointed.h"
 #include "sim/math/limits.h"
 #include "sim/motion/stability.h"
@@ -250,6 +251,27 @@ TEST(Foreboding, AddsTheSpringsOfABody) {
   ASSERT_EQ(stability_warnings(world.model).size(), 1u);
   EXPECT_THAT(stability_warnings(world.model)[0].likely, HasSubstr("2 springs"));
   EXPECT_THAT(stability_warnings(world.model)[0].likely, HasSubstr("above 100"));
+}
+
+// A damped spring on a slider makes its own box diverge, c/m = 1e4 1/s where Runge-Kutta stands 2.785/h;
+// beside it an ordinary spring is too stiff too, and bears up longer.
+TEST(Foreboding, WhatTheSpringOfAJointDoesIsNotLaidToAnotherSpring) {
+  World<2> world = touching_room();
+  world.model.solver = Solver::direct;
+  add_particle(world, {0, 0}, {0, 0}, 0.01);
+  add_spring(world, {0, {0, 0}}, {-1, {0, 1}}, 1000, 1, 30);
+  add_box(world, {0.2, 0.2}, 1, {2, 0});
+  Joint<2> rail;
+  rail.kind = JointKind::slider, rail.name = "rail", rail.a = {1, {0, 0}}, rail.b = {-1, {2, 0}};
+  rail.axis = {0, 1}, rail.coil = Joint<2>::Coil{1e5, 1e4, 0};
+  world.model.joints = {rail};
+  DivergenceMonitor<2> monitor(world.model, {});
+  State<2> state = world.state;
+  state.v[1] = {0, 1e9};
+  const auto trouble = monitor.check_bounds(state, 1);
+  ASSERT_TRUE(trouble);
+  EXPECT_THAT(trouble->likely, HasSubstr("of the spring of rail on"));
+  EXPECT_THAT(trouble->likely, HasSubstr("raise physics.rate above 3587"));
 }
 
 TEST(Foreboding, LooksAtTheMice) {

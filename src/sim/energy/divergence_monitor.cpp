@@ -246,6 +246,12 @@ std::optional<Trouble> DivergenceMonitor<D>::check_turns(const std::vector<doubl
 
 template <int D>
 std::string DivergenceMonitor<D>::likely(const State<D>& state, int body) const {
+  // a spring of its own first: another may be too stiff as well
+  const double h = 1 / value(model_.rate);
+  const Tightness its = tightness(model_, state.grips)[std::size_t(body)];
+  if (grows(model_.integrator, its, h)) return step_too_long_message(model_, its);
+  if (const Tightness joint = tightest_of_joints(model_, body); joint.body >= 0)
+    return step_too_long_message(model_, joint);
   if (const Tightness worst = tightest(model_, state.grips); worst.body >= 0)
     return step_too_long_message(model_, worst);
   if (!too_long_.empty()) return too_long_.front().likely;

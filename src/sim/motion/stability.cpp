@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "sim/constraint/joints/joint.h"
 #include "sim/force/spring.h"
 #include "sim/math/rational.h"
 
@@ -69,6 +70,27 @@ double yielding(const Model<D>& model, const End<D>& end) {
   double sum = 1 / body.mass;
   if (body.turns()) sum += end.local.squaredNorm() / body.inertia.minCoeff();
   return sum;
+}
+
+// The least that a joint's coordinate yields in any pose, 1/kg or 1/(kg m^2). About a pin, with the masses
+// m = m_a m_b / (m_a + m_b) of both and arms r of their centres:
+//   (A + B - 2 C) / (A B - C^2)     A = I_a + m r_a^2,  B likewise,  C = m r_a . r_b <= m |r_a| |r_b|, A, B
+// of one that is held to the room 1 / A.
+template <int D>
+double yielding(const Model<D>& model, const Joint<D>& joint) {
+  const auto moves = [&](const End<D>& end) { return end.body >= 0 && !model.bodies[end.body].fixed; };
+  const auto light = [&](const End<D>& end) { return moves(end) ? 1 / model.bodies[end.body].mass : 0; };
+  const double lights = light(joint.a) + light(joint.b);
+  if (!equations<D>(joint.kind).angle || lights == 0) return lights;
+  const auto about_pin = [&](const End<D>& end) {
+    return model.bodies[end.body].inertia.maxCoeff() + end.local.squaredNorm() / lights;
+  };
+  const auto yields = [](double inertia) { return inertia > 0 ? 1 / inertia : 0; };
+  if (!moves(joint.a) || !moves(joint.b)) return yields(about_pin(moves(joint.a) ? joint.a : joint.b));
+  const double a = about_pin(joint.a), b = about_pin(joint.b);
+  const double arms = std::sqrt(joint.a.local.squaredNorm() * joint.b.local.squaredNorm()) / lights;
+  const double c = std::min({arms, a, b});
+  return a * b > c * c ? (a + b - 2 * c) / (a * b - c * c) : yields(std::max(a, b));
 }
 
 std::string brief(double x) {
@@ -168,7 +190,9 @@ std::string step_too_long_message(const Model<D>& model, const Tightness& oscill
   }
   const std::string strongest =
       (oscillator.hand ? "mouse[" : "spring[") + std::to_string(oscillator.strongest) + "]";
-  if (oscillator.ties == 0) {
+  if (oscillator.of_joint) {
+    text += " of the spring of " + model.joints[std::size_t(oscillator.strongest)].name;
+  } else if (oscillator.ties == 0) {
     text += " of the drag";
   } else if (oscillator.ties == 1) {
     text += " of " + strongest;
@@ -190,6 +214,24 @@ Tightness tightest(const Model<D>& model, const std::vector<Grip<D>>& grips) {
     if (model.bodies[here.body].fixed) continue;
     const double limit = longest_step(model.integrator, here, h);
     if (limit < shortest) shortest = limit, worst = here;
+  }
+  return worst;
+}
+
+template <int D>
+Tightness tightest_of_joints(const Model<D>& model, int body) {
+  Tightness worst;
+  const double h = 1 / value(model.rate);
+  double shortest = h;
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const Joint<D>& joint = model.joints[i];
+    if (!joint.coil || !joint.any_body([&](int held) { return held == body; })) continue;
+    const double yields = yielding(model, joint);
+    Tightness its;
+    its.body = body, its.ties = 1, its.of_joint = true, its.strongest = int(i);
+    its.stiffness = joint.coil->stiffness * yields, its.damping = joint.coil->damping * yields;
+    const double limit = longest_step(model.integrator, its, h);
+    if (limit < shortest) shortest = limit, worst = its;
   }
   return worst;
 }
@@ -237,5 +279,7 @@ template std::string named<3>(const Model<3>&, int);
 template std::vector<Tightness> tightness<3>(const Model<3>&, const std::vector<Grip<3>>&);
 template std::string step_too_long_message<3>(const Model<3>&, const Tightness&);
 template Tightness tightest<3>(const Model<3>&, const std::vector<Grip<3>>&);
+template Tightness tightest_of_joints<2>(const Model<2>&, int);
+template Tightness tightest_of_joints<3>(const Model<3>&, int);
 
 }  // namespace obscura::sim

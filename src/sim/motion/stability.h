@@ -16,6 +16,7 @@ struct Tightness {
   int ties = 0;          // how many springs and hands
   bool hand = false;     // the strongest is a mouse, not a spring
   int strongest = -1;    // its index
+  bool of_joint = false;  // the only one is that of a joint, `strongest` its index
 };
 
 /// All springs on each body, and the hands that hold it under `grips`.
@@ -41,6 +42,11 @@ std::string step_too_long_message(const Model<D>& model, const Tightness& oscill
 /// The tightest of all bodies by its limit; body -1 where the step is short enough for all.
 template <int D>
 Tightness tightest(const Model<D>& model, const std::vector<Grip<D>>& grips);
+
+/// The spring of a joint that holds a body for which the step is too long, the tightest of them, as it is if
+/// no other joint holds its bodies; body -1 where there is none.
+template <int D>
+Tightness tightest_of_joints(const Model<D>& model, int body);
 
 /// A body's name in messages: its own, or "body 3".
 template <int D>

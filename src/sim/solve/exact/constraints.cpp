@@ -134,9 +134,11 @@ double ExactSolver<D>::row_velocity(int row) const {
 
 // collects the constraints of this state, without one-sided ones that separate faster than `fastest`, but for
 // those of returning_. Of what it leaves out, leaving_ has what separates slower than the resting speed. With
-// `reach` also contacts with wider gaps, of at most so many m, that close slowly.
+// `reach` also contacts with wider gaps, of at most so many m, that close slowly; with `near_ends` also
+// limits and ropes that are so far from their ends.
 template <int D>
-void ExactSolver<D>::collect_constraints(const State<D>& state, double fastest, double reach) {
+void ExactSolver<D>::collect_constraints(const State<D>& state, double fastest, double reach,
+                                         double near_ends) {
   using Kind = typename Constraint::Kind;
   constraints_.clear(), rows_.clear(), leaving_.clear();
   const auto returns = [&](const Constraint& constraint) {
@@ -150,8 +152,9 @@ void ExactSolver<D>::collect_constraints(const State<D>& state, double fastest, 
     build_jacobian(constraint, turn);
     const double speed = one_sided ? in_metres(constraint.first, row_velocity(constraint.first)) : 0;
     const bool comes = kind == Kind::contact && speed > -kComing * limits_.rest_speed;
-    const bool apart = one_sided && in_metres(constraint.first, constraint.off) >
-                                        std::max(comes ? reach : 0, limits_.touching_gap);
+    const double farther = kind != Kind::contact ? near_ends : comes ? reach : 0;
+    const bool apart =
+        one_sided && in_metres(constraint.first, constraint.off) > std::max(farther, limits_.touching_gap);
     if (!apart && (speed <= fastest || returns(constraint))) {
       constraints_.push_back(constraint);
       return;

@@ -291,7 +291,8 @@ class ExactSolver final : public ContactSolver<D>, private System {
   void aim_at_end();
   JointTurn<D> turn_between(const State<D>& state, const Joint<D>& joint) const;
   JointTurn<D> turn_of(const State<D>& state, const Constraint& constraint) const;
-  void collect_constraints(const State<D>& state, double fastest = 1e300, double reach = 0);
+  void collect_constraints(const State<D>& state, double fastest = 1e300, double reach = 0,
+                           double near_ends = 0);
   void collect_returning(const State<D>& state, double t);
   void rebuild_rows(const State<D>& state);
   void build_jacobian(Constraint& constraint, const JointTurn<D>& turn);

@@ -166,6 +166,7 @@ template <int D>
 void Iterative<D>::iterate(StepPart<D> part) {
   start_contacts(part);
   if (!joints_.empty()) {
+    open_locked();
     velocities_to_joints();
     joints_.begin(part.h, part.t);
   }
@@ -300,6 +301,7 @@ void Iterative<D>::project_joints(StepPart<D> part) {
   }
   if (part.substep + 1 < substeps_ && !joints_.may_break()) return;
   joints_.find_end_forces(state, part.t + part.h);
+  bear_locked(part);
   joints_.keep(state, part.h);
   joints_.break_joints(state);
 }

@@ -97,6 +97,7 @@ class Iterative : public ContactSolver<D> {
   /// has them in the same order.
   struct TouchEnds {
     int place, number, a, b;
+    bool passes = false;  // no impact is to be expected there
   };
   /// Its rows, normal first, as iterations have them: speeds less what is wanted, and impulses.
   struct TouchRows {
@@ -106,7 +107,13 @@ class Iterative : public ContactSolver<D> {
   };
   virtual void list_touches(std::vector<TouchEnds>& touches) const = 0;
   virtual TouchRows read_touch(int number) const = 0;
+  /// The rows where bodies stand as the substep begins.
+  virtual std::array<Row<D>, D> begun_rows(int number) const = 0;
   virtual void write_touch(int number, const TouchRows& its) = 0;
+  /// Takes back its impulse; iterations leave it out. False where an impact aims at its speed.
+  virtual bool open_touch(int number) = 0;
+  /// At the end of the substep: that it bears so much, N, beside what moves bodies.
+  virtual void bear_touch(StepPart<D> part, int number, double force) = 0;
   /// Before read_touch() and after write_touch(), if there was any.
   virtual void begin_jointed() {}
   virtual void end_jointed(bool) {}
@@ -248,6 +255,9 @@ class Iterative : public ContactSolver<D> {
 
  private:
   void project_joints(StepPart<D> part);
+  void open_locked();
+  bool locks(int touch, typename JointSolver<D>::JointResponse& response);
+  void bear_locked(StepPart<D> part);
   void solve_jointed();
   bool solve_jointed(std::span<const std::tuple<int, int, int>> island);
   void fall_from_rest(std::span<const typename Sleep<D>::Island> islands, double h);
@@ -256,6 +266,13 @@ class Iterative : public ContactSolver<D> {
 
   TouchNotes<D> notes_;
   std::vector<std::pair<int, int>> touching_;
+  // contacts that joints leave nothing to move (sim/solve/iterate/locked_contacts.cpp)
+  struct {
+    std::vector<TouchEnds> ends;
+    std::vector<int> numbers;
+    std::vector<typename JointSolver<D>::JointResponse> responses;  // to their normals
+    std::vector<double> forces;
+  } locked_;
   std::vector<char> on_joints_;  // bodies: of those that rest
   std::vector<char> on_motors_;  // bodies: of joints with motors
   struct {

@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kMostTogether = 100;  // ends of one component: of more, one after another
 constexpr double kSame = 1e-9;              // of one: what is left of another that says the same
 constexpr int kRounds = 8;                  // of Newton's
+constexpr int kAgain = 3;                   // ends that were put, after joints
 constexpr int kSearches = 12;               // the same, with a search along each
 constexpr double kStride = 0.1;             // rad, and of the scene's size: farther nothing is put in a step
 constexpr double kLeastFraction = 1e-3;     // of a way, in it
@@ -125,12 +126,12 @@ void JointSolver<D>::solve_within(int begin, int end) {
   }
 }
 
-// Ropes and limits of a component that held to the end, together, and with `beyond` all that are beyond their
-// ends too: one after another those on something light would undo each other's work, and after some steps be
-// taken for slack.
+// Ropes and limits of a component that held to the end, together; also all that are beyond their ends; or
+// `again` those that were. One after another those on something light would undo each other's work, and after
+// some steps be taken for slack.
 //   K s = -C     K: their coupling, with the joints' reaction; of ends that say the same s of least norm
 template <int D>
-void JointSolver<D>::put_ends(double h, bool beyond) {
+void JointSolver<D>::put_ends(double h, PutEnds which) {
   if (active_ == 0) return;
   for (int component = -1; component < components(); ++component) {
     const int begin = component_first_[component + 1], end = component_first_[component + 2];
@@ -138,7 +139,9 @@ void JointSolver<D>::put_ends(double h, bool beyond) {
     for (int i = begin; i < end; ++i) {
       const Bounded& bounded = bounded_[std::size_t(by_component_[std::size_t(i)])];
       if (bounded.load > upper || !(bounded.effective_mass > 0)) continue;
-      if (held_there(bounded, h) || (beyond && left(bounded.joint, bounded.load) < 0))
+      if (held_there(bounded, h) || (which == PutEnds::beyond && left(bounded.joint, bounded.load) < 0) ||
+          (which == PutEnds::again && bounded.put_back &&
+           std::fabs(left(bounded.joint, bounded.load)) <= kErrs * size(bounded.joint)))
         together_.push_back(i), puts_.push_back(bounded.put);
     }
     const std::size_t n = together_.size();
@@ -164,8 +167,11 @@ void JointSolver<D>::put_ends(double h, bool beyond) {
     }
     const bool helped = near() && worst <= begun && position_error() <= strayed + begun;
     if (!helped) at_ = begun_at_, turn_ = begun_turn_;
-    for (std::size_t p = 0; p < n; ++p)
-      if (!helped || !held_there(together(p), h)) together(p).put = puts_[p];
+    for (std::size_t p = 0; p < n; ++p) {
+      const bool held = held_there(together(p), h);
+      if (!helped || !held) together(p).put = puts_[p];
+      if (helped && !held) together(p).put_back = true;
+    }
   }
 }
 
@@ -173,7 +179,7 @@ void JointSolver<D>::put_ends(double h, bool beyond) {
 template <int D>
 void JointSolver<D>::project_positions(double h) {
   put_motors();
-  put_ends(h, false);
+  put_ends(h, PutEnds::held);
   for (std::size_t k = 0; k < active_; ++k) {
     Bounded& bounded = bounded_[k];
     if (bounded.load > upper) continue;
@@ -200,14 +206,36 @@ void JointSolver<D>::project_positions(double h) {
       at_ = begun_at_, turn_ = begun_turn_;
     }
     // where it was far beyond its end it is put back, no more
-    bounded.put = 0;
+    bounded.put = 0, bounded.put_back = true;
   }
-  put_ends(h, true);
+  put_ends(h, PutEnds::beyond);
   begun_at_ = at_, begun_turn_ = turn_;
   std::fill(shifts_.begin(), shifts_.end(), 0.0);
-  const double close = 1e-15 * model_.scale, enough = kPut * model_.scale;
+  double worst = close_joints();
+  // That turns what was put by the square of how far it was put. An end that is off by more than kTaut is
+  // none to the next step, and a motor that presses there would strike it in each.
+  for (int round = 0; round < kAgain && worst <= kPut * model_.scale && ends_strayed(); ++round) {
+    again_at_ = at_, again_turn_ = turn_, ways_ = shifts_;
+    const double closed = worst;
+    put_ends(h, PutEnds::again);
+    begun_at_ = at_, begun_turn_ = turn_;
+    worst = close_joints();
+    if (worst <= kPut * model_.scale && near()) continue;
+    at_ = begun_at_ = again_at_, turn_ = begun_turn_ = again_turn_, shifts_ = ways_, worst = closed;
+    break;
+  }
+  old_rows_ = rows_, begun_drive_works_ = drive_works_;
+  if (worst <= kPut * model_.scale && near()) return;
+  at_.swap(begun_at_), turn_.swap(begun_turn_);
+  std::fill(shifts_.begin(), shifts_.end(), 0.0);
+  damped_newton();
+}
+
+// Newton's, with the rows at hand. How far joints are off then, m.
+template <int D>
+double JointSolver<D>::close_joints() {
   double worst = position_error(), before = kEndless;
-  for (int round = 0; round < kRounds && worst > close && worst <= 0.9 * before; ++round) {
+  for (int round = 0; round < kRounds && worst > 1e-15 * model_.scale && worst <= 0.9 * before; ++round) {
     before = worst;
     factors_.solve(rhs_.data());
     for (std::size_t r = 0; r < rows_.size(); ++r) {
@@ -216,11 +244,18 @@ void JointSolver<D>::project_positions(double h) {
     }
     worst = position_error();
   }
-  old_rows_ = rows_, begun_drive_works_ = drive_works_;
-  if (worst <= enough && near()) return;
-  at_.swap(begun_at_), turn_.swap(begun_turn_);
-  std::fill(shifts_.begin(), shifts_.end(), 0.0);
-  damped_newton();
+  return worst;
+}
+
+// whether an end that was put back, where a motor presses, is off by so much that the next step finds nothing
+// there
+template <int D>
+bool JointSolver<D>::ends_strayed() const {
+  return std::any_of(bounded_.begin(), bounded_.begin() + std::ptrdiff_t(active_), [&](const Bounded& it) {
+    if (!it.put_back || !model_.joints[std::size_t(it.joint)].motor) return false;
+    const double off = std::fabs(left(it.joint, it.load)), its = size(it.joint);
+    return off > kTaut * its && off <= kErrs * its;
+  });
 }
 
 // Position projection by damped Newton iterations, with new rows and factors in each, where the simple one
@@ -377,7 +412,9 @@ bool JointSolver<D>::update_bounded(double h) {
   template void JointSolver<D>::couple_together(int);      \
   template void JointSolver<D>::solve_together();          \
   template void JointSolver<D>::solve_within(int, int);    \
-  template void JointSolver<D>::put_ends(double, bool);    \
+  template void JointSolver<D>::put_ends(double, PutEnds); \
+  template double JointSolver<D>::close_joints();          \
+  template bool JointSolver<D>::ends_strayed() const;      \
   template void JointSolver<D>::project_positions(double); \
   template void JointSolver<D>::damped_newton();           \
   template void JointSolver<D>::finish(double, double);    \

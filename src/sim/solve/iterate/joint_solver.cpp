@@ -135,7 +135,8 @@ void JointSolver<D>::plan() {
     if (component_of_body_[i] >= 0) members_[component_of_body_[i]].push_back(i);
   }
   rows_.resize(factors_.rows()), old_rows_.resize(factors_.rows());
-  for (auto* numbers : {&impulses_, &totals_, &rhs_, &shifts_}) numbers->resize(factors_.rows());
+  for (auto* numbers : {&impulses_, &totals_, &rhs_, &shifts_, &end_forces_, &loads_})
+    numbers->resize(factors_.rows());
   targets_.assign(std::size_t(factors_.rows()), 0.0);
   acting_.assign(held_.size(), {}), has_bounded_row_.assign(held_.size(), 0);
   for (const int block : bounded_blocks_) has_bounded_row_[std::size_t(block)] = 1;
@@ -319,7 +320,7 @@ void JointSolver<D>::collect_bounded(double h) {
     if (active_ == bounded_.size()) bounded_.emplace_back();
     Bounded& b = bounded_[active_];
     b.joint = i, b.load = load;
-    b.impulse = b.at_end = b.put = 0, b.target = 0;
+    b.impulse = b.at_end = b.put = 0, b.target = 0, b.put_back = false;
 
     Row<D> out[kMostHeld<D>];
     double offs[kMostHeld<D>];
@@ -501,6 +502,7 @@ void JointSolver<D>::begin(double h, double t) {
   collect_bounded(h);
   couple_bounded();
   std::fill(impulses_.begin(), impulses_.end(), 0.0), std::fill(totals_.begin(), totals_.end(), 0.0);
+  relief_.assign(rows_.size(), 0.0);
   speeds_.resize(active_), changes_.resize(active_);
 }
 
@@ -560,7 +562,7 @@ void JointSolver<D>::keep(State<D>& state, double h, const std::vector<char>* of
     if (!wanted(held_[k])) continue;
     if (!of) add(held_[k], end_loads_[k]);
     for (int r = factors_.first(k); r < factors_.first(k) + factors_.size(k); ++r)
-      add(held_[k], load(held_[k], rows_[r]) * (impulses_[r] / h));
+      add(held_[k], load(held_[k], rows_[r]) * (impulses_[r] / h + relief_[std::size_t(r)]));
   }
   for (std::size_t k = 0; k < active_; ++k) {
     const Bounded& b = bounded_[k];

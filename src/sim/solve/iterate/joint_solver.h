@@ -172,6 +172,13 @@ class JointSolver final : public System {
     }
   }
 
+  /// Gives the bodies a motion that joints let them have, and that leaves still only rows along which none
+  /// lets them move, and hardly any others. After compute_rows(); the caller writes velocities anew.
+  void try_motion();
+  /// Contacts along whose normals joints leave nothing to move: the forces that they bear beside the joints,
+  /// N, which bear so much less, in what keep() writes. After find_end_forces().
+  void share_loads(std::span<const JointResponse> contacts, std::span<double> forces, double h);
+
   /// The work of kinematic bodies by a unit of impulse along a row and by the joints' reactions to it, J.
   double given(const JointResponse& response) const;
 
@@ -180,7 +187,8 @@ class JointSolver final : public System {
   /// at once, as joints hold them, where these are struck. Found once a substep, after keep_row_speeds().
   std::span<const JointResponse> reached_ends(int component);
   /// J v of a row by the velocities of body_motion(), m/s or rad/s.
-  double row_speed(const JointResponse& response) const { return speed(response.row, at_); }
+  double row_speed(const JointResponse& response) const { return row_speed(response.row); }
+  double row_speed(const Row<D>& row) const { return speed(row, at_); }
   /// The work of kinematic bodies by a unit of impulse at an end, J.
   double given_at_end(const JointResponse& end) const { return given(end.row) + given(end); }
 
@@ -244,6 +252,7 @@ class JointSolver final : public System {
     double effective_mass = 0;               // effective mass, with the joints' reaction
     double impulse = 0;
     double put = 0;                     // kg m or kg m^2: pseudo-impulse of the position projection
+    bool put_back = false;              // by it, from beyond its end
     double at_end = 0, rate_there = 0;  // of that what the end of the step gave; of a motor its speed before
     double ends = 0;                    // rad or m: of a motor, the coordinate that its speed leads to
     double begun_drive_work = 0;  // work of kinematic bodies by a unit of impulse, at the start of the step
@@ -374,7 +383,10 @@ class JointSolver final : public System {
   void save(const State<D>& state);
   void restore(State<D>& state) const;
   void put_motors();
-  void put_ends(double h, bool beyond);
+  enum class PutEnds { held, beyond, again };
+  void put_ends(double h, PutEnds which);
+  bool ends_strayed() const;
+  double close_joints();
   double position_error();
   bool near() const;
   void project_positions(double h);
@@ -394,6 +406,8 @@ class JointSolver final : public System {
   std::vector<Orientation<D>> turn_;
   std::vector<BodyMotion<D>> begun_at_;  // before they are put back
   std::vector<Orientation<D>> begun_turn_;
+  std::vector<BodyMotion<D>> again_at_;  // before ends are put again
+  std::vector<Orientation<D>> again_turn_;
   std::vector<Vec<D>> unprojected_;  // centres before the positions were projected
   Response<D> response_;
 
@@ -474,6 +488,9 @@ class JointSolver final : public System {
   std::vector<double> free_motors_;
   std::vector<double> end_rates_;
   std::vector<Wrench<D>> end_loads_;  // of each joint of held_ at the end of the step, on a
+  std::vector<double> end_forces_;    // of each row there
+  std::vector<double> loads_;         // of each row, with contacts; N or N m
+  std::vector<double> relief_;        // of each row: what contacts that it locks bear in its place
   std::vector<Bounded> bounded_;      // the first `active_` are in use
   std::size_t active_ = 0;
   std::vector<int> by_component_;     // numbers of them by component, those of component -1 first

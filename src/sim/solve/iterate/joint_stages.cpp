@@ -215,28 +215,26 @@ void JointSolver<D>::loosen_all() {
 }
 
 // What was beyond its bounds in a stage: what then holds in its place, or its known force. True if there is
-// any.
+// any. Ends only where motors and friction are within theirs: through a gear these may hold what an end does.
 template <int D>
 bool JointSolver<D>::release() {
   bool any = false;
-  for (const int k : bounded_blocks_) {
-    Acting& acting = acting_[std::size_t(k)];
-    if (acting.load == none || acting.spare >= 0) continue;
-    const Joint<D>& joint = model_.joints[std::size_t(held_[std::size_t(k)])];
-    const bool pulled = acting.beyond > 0;
-    any = true;
-    if (acting.load == friction) {
-      acting.rub = pulled ? joint.friction : -joint.friction;
-      acting.load = none;
-      continue;
+  for (const bool ends : {false, true}) {
+    for (const int k : bounded_blocks_) {
+      Acting& acting = acting_[std::size_t(k)];
+      const Load load = acting.load;
+      if (load == none || acting.spare >= 0 || (load <= upper) != ends) continue;
+      const Joint<D>& joint = model_.joints[std::size_t(held_[std::size_t(k)])];
+      const double sign = acting.beyond > 0 ? 1 : -1;
+      any = true;
+      if (load == friction) acting.rub = sign * joint.friction;
+      if (load == motor) acting.drive = sign * joint.motor->most;
+      acting.released = acting.released || ends;
+      acting.load = load != friction && joint.friction > 0 && acting.rub == 0 ? friction : none;
     }
-    if (acting.load == motor)
-      acting.drive = pulled ? joint.motor->most : -joint.motor->most;
-    else
-      acting.released = true;
-    acting.load = joint.friction > 0 && acting.rub == 0 ? friction : none;
+    if (any) return true;
   }
-  return any;
+  return false;
 }
 
 // the speed of a joint's coordinate less what a motor aims at, or friction
@@ -537,7 +535,7 @@ void JointSolver<D>::find_end_forces(const State<D>& state, double t) {
   ways_ = rhs_;
   for (std::size_t r = 0; r < rows_.size(); ++r) push_rates(rows_[r], ways_[r], end_rates_);
   solve_forces(t, end_rates_);
-  for (std::size_t r = 0; r < rows_.size(); ++r) rhs_[r] += ways_[r];
+  for (std::size_t r = 0; r < rows_.size(); ++r) end_forces_[r] = rhs_[r] += ways_[r];
   for (std::size_t k = 0; k < held_.size(); ++k) {
     end_loads_[k] = {};
     const int first = factors_.first(int(k));

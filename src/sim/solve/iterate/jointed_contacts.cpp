@@ -26,6 +26,7 @@ void Iterative<D>::solve_jointed() {
   const int n = int(model_.bodies.size());
   std::vector<TouchEnds>& ends = jointed_.ends;
   ends.clear(), list_touches(ends);
+  std::erase_if(ends, [](const TouchEnds& touch) { return touch.passes; });
   if (ends.empty()) return;
   Islands& sets = jointed_.sets;
   sets.reset(n);

@@ -53,6 +53,9 @@ class PlaneIterative final : public Iterative<2> {
   void list_touches(std::vector<TouchEnds>& touches) const override;
   TouchRows read_touch(int number) const override;
   void write_touch(int number, const TouchRows& its) override;
+  std::array<Row<D>, D> begun_rows(int number) const override;
+  bool open_touch(int number) override;
+  void bear_touch(StepPart<D> part, int number, double force) override;
   double contact_work(StepPart<D> part) const override;
   void place_bodies(StepPart<D> part) override;
   void moved_by_joints(const State<D>& state, int body) override;
@@ -110,6 +113,7 @@ class PlaneIterative final : public Iterative<2> {
   double squared_change() const;
   static bool may_bear(const plane::ContactBatch& batch, int lane, int k);
   double least_speed(const plane::ContactBatch& batch, int slot, int k, double gap) const;
+  std::array<Row<D>, D> rows_of(const plane::ContactBatch& batch, int lane, const plane::TouchRow& row) const;
   void solve_together(std::span<const std::pair<int, int>> lanes);
   void find_bearing(const State<D>& state, double h);
   void integrate_unconstrained(State<D>& state, double t, double h);

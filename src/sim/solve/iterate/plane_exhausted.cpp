@@ -122,7 +122,8 @@ void PlaneIterative::solve_together(std::span<const std::pair<int, int>> lanes) 
 // (sim/solve/iterate/jointed_contacts.cpp)
 
 bool PlaneIterative::may_bear(const ContactBatch& g, int lane, int k) {
-  return !(g.gap[k][lane] > g.sight[lane]) || (g.struck[k] >> lane & 1);
+  if (g.struck[k] >> lane & 1) return true;
+  return !(g.gap[k][lane] > g.sight[lane]) && g.turns[k][lane] < plane::kOpen;
 }
 
 void PlaneIterative::list_touches(std::vector<TouchEnds>& touches) const {
@@ -146,16 +147,23 @@ double PlaneIterative::least_speed(const ContactBatch& g, int slot, int k, doubl
   return std::min(-gap / constants_.h, 0.0) - g.turns[k][lane];
 }
 
+std::array<Row<2>, 2> PlaneIterative::rows_of(const ContactBatch& g, int lane,
+                                              const plane::TouchRow& r) const {
+  std::array<Row<D>, D> rows;
+  auto& [normal, across] = rows;
+  normal.a = across.a = g.a[lane], normal.b = across.b = g.b[lane] < int(turns_.size()) ? g.b[lane] : -1;
+  normal.along = {r.nx, r.ny}, normal.angular_a[0] = r.na, normal.angular_b[0] = r.nb;
+  across.along = {-r.ny, r.nx}, across.angular_a[0] = r.ta, across.angular_b[0] = r.tb;
+  return rows;
+}
+
 PlaneIterative::TouchRows PlaneIterative::read_touch(int number) const {
   const int slot = number / 2, k = number % 2, lane = slot % kLanes;
   const ContactBatch& g = batches_[std::size_t(slot / kLanes)];
   const plane::TouchRow r = middle_row(g, lane, k, middle_[g.a[lane]], middle_[g.b[lane]]);
   const Motion &va = moving_[g.a[lane]], &vb = moving_[g.b[lane]];
   TouchRows touch;
-  Row<D>&normal = touch.rows[0], &across = touch.rows[1];
-  normal.a = across.a = g.a[lane], normal.b = across.b = g.b[lane] < int(turns_.size()) ? g.b[lane] : -1;
-  normal.along = {r.nx, r.ny}, normal.angular_a[0] = r.na, normal.angular_b[0] = r.nb;
-  across.along = {-r.ny, r.nx}, across.angular_a[0] = r.ta, across.angular_b[0] = r.tb;
+  touch.rows = rows_of(g, lane, r);
   touch.speed = {normal_speed(r, va, vb) - least_speed(g, slot, k, r.gap),
                  tangent_speed(r, va, vb) + g.surface[k][lane]};
   touch.impulse = {g.p[k][lane], g.q[k][lane]};
@@ -167,6 +175,43 @@ void PlaneIterative::write_touch(int number, const TouchRows& its) {
   const int slot = number / 2, k = number % 2, lane = slot % kLanes;
   ContactBatch& g = batches_[std::size_t(slot / kLanes)];
   g.p[k][lane] = its.impulse[0], g.q[k][lane] = its.impulse[1];
+}
+
+// --- those that joints leave nothing to move (sim/solve/iterate/locked_contacts.cpp)
+
+std::array<Row<2>, 2> PlaneIterative::begun_rows(int number) const {
+  const int slot = number / 2, lane = slot % kLanes;
+  const ContactBatch& g = batches_[std::size_t(slot / kLanes)];
+  const plane::TouchRow r = plane::row(g, lane, number % 2, poses_[g.a[lane]], poses_[g.b[lane]]);
+  return rows_of(g, lane, r);
+}
+
+bool PlaneIterative::open_touch(int number) {
+  const int slot = number / 2, k = number % 2, lane = slot % kLanes;
+  ContactBatch& g = batches_[std::size_t(slot / kLanes)];
+  if (g.struck[k] >> lane & 1) return false;
+  const plane::TouchRow r = middle_row(g, lane, k, middle_[g.a[lane]], middle_[g.b[lane]]);
+  const double x = -(g.p[k][lane] * r.nx - g.q[k][lane] * r.ny),
+               y = -(g.p[k][lane] * r.ny + g.q[k][lane] * r.nx);
+  const auto push = [&](int body, double sign, double turn) {
+    Motion& v = moving_[std::size_t(body)];
+    v.x += sign * v.im * x, v.y += sign * v.im * y, v.w += sign * ii_[std::size_t(body)] * turn;
+  };
+  push(g.a[lane], 1, -(r.na * g.p[k][lane] + r.ta * g.q[k][lane]));
+  push(g.b[lane], -1, -(r.nb * g.p[k][lane] + r.tb * g.q[k][lane]));
+  g.p[k][lane] = g.q[k][lane] = 0, g.turns[k][lane] = plane::kOpen;
+  return true;
+}
+
+void PlaneIterative::bear_touch(StepPart<D> part, int number, double force) {
+  const int slot = number / 2, k = number % 2, lane = slot % kLanes;
+  ContactBatch& g = batches_[std::size_t(slot / kLanes)];
+  const plane::TouchRow r = middle_row(g, lane, k, middle_[g.a[lane]], middle_[g.b[lane]]);
+  g.p[k][lane] = force * r.nx, g.q[k][lane] = force * r.ny;
+  if (part.substep + 1 < substeps_) return;
+  Contact<D>& contact = part.state.contacts[std::size_t(g.first[lane] + k)];
+  contact.force = {g.p[k][lane], g.q[k][lane]};
+  if (force > 0) contact.touching = ContactMode::stick;
 }
 
 }  // namespace obscura::sim

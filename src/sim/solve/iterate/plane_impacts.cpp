@@ -318,7 +318,7 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
         (would_push(0) || (pair.touches > 1 && would_push(1))) && apart_at(pair, step.constants.h, g, step)) {
       for (int k = 0; k < pair.touches; ++k) {
         g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
-        least_[group].n[k][lane] = kNoTarget;
+        least_[group].n[k][lane] = kNoAim;
       }
       return;
     }
@@ -342,7 +342,7 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
       double& least = least_[group].n[k][lane];
       g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
       if (parts) {
-        least = kNoTarget;
+        least = kNoAim;
         continue;
       }
       const double middle = in_middle(k);

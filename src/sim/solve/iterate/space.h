@@ -56,6 +56,9 @@ class SpaceIterative final : public Iterative<3> {
   void list_touches(std::vector<TouchEnds>& touches) const override;
   TouchRows read_touch(int number) const override;
   void write_touch(int number, const TouchRows& its) override;
+  std::array<Row<D>, D> begun_rows(int number) const override;
+  bool open_touch(int number) override;
+  void bear_touch(StepPart<D> part, int number, double force) override;
   void begin_jointed() override { batches_.store(touches_); }
   void end_jointed(bool changed) override {
     if (changed) batches_.load(touches_);

@@ -351,7 +351,7 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
                              -restitution_threshold_, left, h);
     // where other features have met, those that it had say nothing of what bounces and parts by these
     if (touch.renewals > 0 && touch.bounce > kBounces && parts_at(touch.a, touch.b, t, h))
-      touch.least = kNoTarget;
+      touch.least = kNoAim;
   }
   end_struck_joints(h, [&](int body) {
     Twist<D> given;

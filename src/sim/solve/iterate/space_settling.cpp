@@ -146,7 +146,7 @@ void SpaceIterative::list_touches(std::vector<TouchEnds>& touches) const {
   const int n = int(model_.bodies.size());
   for (int i = 0; i < int(touches_.size()); ++i) {
     const ContactConstraint& touch = touches_[std::size_t(i)];
-    if (!touch.passes) touches.push_back({i, i, touch.a, touch.b < n ? touch.b : -1});
+    touches.push_back({i, i, touch.a, touch.b < n ? touch.b : -1, touch.passes});
   }
 }
 
@@ -170,6 +170,30 @@ void SpaceIterative::write_touch(int number, const TouchRows& its) {
   ContactConstraint& touch = touches_[std::size_t(number)];
   touch.normal_impulse = its.impulse[0];
   touch.tangent_impulse = its.impulse[1] * its.rows[1].along + its.impulse[2] * its.rows[2].along;
+}
+
+// --- those that joints leave nothing to move (sim/solve/iterate/locked_contacts.cpp)
+
+std::array<Row<3>, 3> SpaceIterative::begun_rows(int number) const {
+  static const BodyMotion<D> room;
+  const ContactConstraint& touch = touches_[std::size_t(number)];
+  const BodyMotion<D>&a = stances_[touch.a],
+        &b = touch.b == int(model_.bodies.size()) ? room : stances_[touch.b];
+  const EvaluatedContact<D> begun = evaluate(features_[std::size_t(number)], a, b);
+  return rows_of(touch, begun.normal, begun.point - a.x, begun.point - b.x);
+}
+
+bool SpaceIterative::open_touch(int number) {
+  ContactConstraint& touch = touches_[std::size_t(number)];
+  if (touch.blow || touch.after) return false;
+  push(touch, -touch.normal_impulse * touch.n - touch.tangent_impulse);
+  touch.normal_impulse = 0, touch.tangent_impulse.setZero();
+  touch.least = kNoAim, touch.passes = true, touch.bounces = touch.closing = touch.slides = false;
+  return true;
+}
+
+void SpaceIterative::bear_touch(StepPart<D> part, int number, double force) {
+  touches_[std::size_t(number)].normal_impulse = part.h * force;
 }
 
 // Where iterations end before they have converged, contacts may press more than they should, and what they

@@ -47,6 +47,8 @@ AllowedOverlap allowed_overlap(const Model<D>& model) {
   return {kMost * crowded * crowded * crowded};
 }
 
+/// m/s: the least speed that a contact wants which is left out; far beyond any that a scene of 1e13 m has.
+inline constexpr double kNoAim = -1e30;
 /// The most that two bodies may approach in a substep, in widths of the narrower one; see ruling_rate().
 inline constexpr double kCloser = 0.025;
 /// The fewest and the most substeps a second.
@@ -98,9 +100,6 @@ inline constexpr double kAllButStill = 0.1;
 /// Islands of so many contacts at most are solved exactly where iterations do not settle them, by so many
 /// linear systems at most.
 inline constexpr int kFewSolved = 24, kSolvedSystems = 20;
-
-/// m/s: the least normal speed of a contact that nothing aims at.
-inline constexpr double kNoTarget = -1e9;
 
 /// Tolerance of the time of an impact, of a substep; Newton's next correction would be of the order of its
 /// square.
