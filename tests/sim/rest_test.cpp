@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -324,6 +325,7 @@ World<D> scaled(const World<D>& world, int k) {
     if (Box<D>* box = form<Box<D>>(body.shape)) box->half *= s;
     body.inertia *= s * s;
   }
+  for (Wall<D>& wall : it.model.walls) wall.point *= s;
   for (Vec<D>& x : it.state.x) x *= s;
   for (Vec<D>& v : it.state.v) v *= s;
   return it;
@@ -354,6 +356,24 @@ TEST(Rest, ARoomScaledInLengthsAndGravityRestsAlike) {
       }
     }
   });
+}
+
+// speeds of 1e9 m/s and gaps of 1e9 m too: they once meant that there is no contact
+TEST(Rest, ARoomOfAMillionMillionMetresBouncesAlike) {
+  World<2> world = touching_room();
+  world.model.solver = Solver::iterative;
+  add_walls(world, 4, 4);
+  add_ball(world, 0.1, 0.5, {2.3, 3}, {1, 0}, 0, 0.5);
+  add_box(world, {0.5, 0.3}, 0.7, {2.2, 1}, {0, 0}, std::numbers::pi / 6, 0, 0.8);
+  rub(world, 0.5);
+  const State<2> want = stepped(world, 600);
+  for (const int k : {20, 28, 30, 38}) {
+    const State<2> now = stepped(scaled(world, k), 600);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(now.x[i], Vec2(std::ldexp(1.0, k) * want.x[i])) << i << ", 2^" << k;
+      EXPECT_EQ(now.turn[i], want.turn[i]) << i << ", 2^" << k;
+    }
+  }
 }
 
 TEST(Rest, WithoutGravityWhatDoesNotMoveAtAllRests) {

@@ -67,7 +67,7 @@ inline double target_after_impacts(double target, const GapInTime& gap, double t
   if (gap.width <= together && !later) return target;
   // an approach this fast would have been an impact if the two could meet: they pass each other
   const bool passes = gap.speed < slow || left <= kInTime * h;
-  return passes ? -1e9 : target - gap.width / left;
+  return passes ? kNoAim : target - gap.width / left;
 }
 
 }  // namespace obscura::sim

@@ -357,7 +357,7 @@ OBSCURA_INLINE int iterate_all(ContactBatch* batches, int count, const Pose* pos
       [[maybe_unused]] const V begun_l0 = l0, begun_t0 = t0, begun_l1 = l1, begun_t1 = t1;
       solve_friction<V>(two, r0, mu * l0, t0, g->surface[0] + lane);
       solve_friction<V>(two, r1, mu * l1, t1, g->surface[1] + lane);
-      const V sight = load<V>(g->sight + lane), never = V{} - 1e9;
+      const V sight = load<V>(g->sight + lane), never = V{} + kNoAim;
       const V open0 =
           pick<V>(r0.gap > sight, never, smaller<V>(-r0.gap * per_h, none) - load<V>(g->turns[0] + lane));
       const V open1 =

@@ -13,8 +13,8 @@ namespace obscura::sim::plane {
 // from the poses in every pass, as memory is slower than arithmetic.
 
 inline constexpr int kLanes = 4;
-inline constexpr double kNowhere = 1e9;  // m: the gap of an unused contact point
-inline constexpr double kOpen = 1e9;     // m/s: of ContactBatch::turns, of a touch that is left out
+inline constexpr double kNowhere = 1e30;  // m: the gap of an unused contact point
+inline constexpr double kOpen = 1e30;     // m/s: of ContactBatch::turns, of a touch that is left out
 
 /// Velocity (m/s, rad/s) or displacement (m, rad) of a body, and 1/kg: zero for what does not move.
 struct alignas(32) Motion {

@@ -22,7 +22,6 @@ namespace {
 
 constexpr std::size_t kPairsAhead = 4;      // pairs that are asked for, as they are far apart in memory
 constexpr std::size_t kMostAtOnce = 30000;  // impacts of an instant, of what bounces less than wholly
-constexpr double kNoTarget = -1e9;          // m/s: of a speed that nothing aims at
 
 // of a body's fastest point, at most, m/s
 double swiftness(const Motion& v, double radius) {
@@ -318,7 +317,7 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
         (would_push(0) || (pair.touches > 1 && would_push(1))) && apart_at(pair, step.pace.h, g, step)) {
       for (int k = 0; k < pair.touches; ++k) {
         g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
-        least_[group].n[k][lane] = kNoTarget;
+        least_[group].n[k][lane] = kNoAim;
       }
       return;
     }
@@ -341,7 +340,7 @@ void Impacts::leave_to_iterations(std::vector<ContactBatch>& batches, const Step
       double& least = least_[group].n[k][lane];
       g.struck[k] = static_cast<unsigned char>(g.struck[k] | 1 << lane);
       if (parts) {
-        least = kNoTarget;
+        least = kNoAim;
         continue;
       }
       const double middle = in_middle(k);

@@ -286,7 +286,7 @@ void SpaceIterative::order_blows(double h) {
       ContactConstraint& touch = touches_[i];
       if (!touch.blow) continue;
       later_blows_.push_back({i, after});
-      touch.least = -1e9, touch.bounces = touch.closing = false;
+      touch.least = kNoAim, touch.bounces = touch.closing = false;
     }
   });
 }

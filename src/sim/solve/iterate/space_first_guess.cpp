@@ -61,13 +61,13 @@ void SpaceIterative::set_aims(int begin, int end, const State<D>& state, double 
     if (touch.after) {
       // what is left of the step
     } else if (!lasting && before < -strike_speed(touch) && touch.gap + h * (before - g_ * h) < 0) {
-      touch.least = touch.passes ? -1e9 : -touch.bounce * before;
+      touch.least = touch.passes ? kNoAim : -touch.bounce * before;
       touch.blow = !touch.passes;
       touch.bounces = !touch.passes && touch.bounce > 0;
       touch.closes = std::clamp(-touch.gap / before, 0.0, h);
       touch.closing = !touch.passes && touch.bounce == 0;
     } else if (!lasting && before < -strike_speed(touch) && meets_later(touch, before, h)) {
-      touch.least = -1e9;
+      touch.least = kNoAim;
     } else {
       touch.least = std::min(-touch.gap / h, 0.0);
       touch.closing = !lasting && before < -0.05 * restitution_threshold_ && touch.gap + h * before < 0;

@@ -348,7 +348,8 @@ void SpaceIterative::resolve_impacts(StepPart<D> step) {
         target_after_impacts(touch.apart, {at.now.value, at.speed}, kTogether * bounding_radius_[touch.a],
                              -restitution_threshold_, left, h);
     // where other features have met, those that it had say nothing of what bounces and parts by these
-    if (touch.renewals > 0 && touch.bounce > kBounces && parts_at(touch.a, touch.b, t, h)) touch.least = -1e9;
+    if (touch.renewals > 0 && touch.bounce > kBounces && parts_at(touch.a, touch.b, t, h))
+      touch.least = kNoAim;
   }
   end_struck_joints(h, [&](int body) {
     Twist<D> given;

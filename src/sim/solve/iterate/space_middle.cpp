@@ -84,7 +84,7 @@ bool SpaceIterative::strikes(const ContactConstraint& touch, const Vec<D>& passe
   const double much =
       kStrikes * (swiftness(touch.a) + (touch.b < int(model_.bodies.size()) ? swiftness(touch.b) : 0));
   if (touch.blow) return -touch.n.dot(passes) > much;
-  return touch.least < -1e8 || (slip(touch) - touch.belt - passes).squaredNorm() > much * much;
+  return touch.least < 0.5 * kNoAim || (slip(touch) - touch.belt - passes).squaredNorm() > much * much;
 }
 
 // where bodies stand in the middle of the substep

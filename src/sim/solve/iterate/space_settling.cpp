@@ -188,7 +188,7 @@ bool SpaceIterative::open_touch(int number) {
   if (touch.blow || touch.after) return false;
   push(touch, -touch.normal_impulse * touch.n - touch.tangent_impulse);
   touch.normal_impulse = 0, touch.tangent_impulse.setZero();
-  touch.least = -1e9, touch.passes = true, touch.bounces = touch.closing = touch.slides = false;
+  touch.least = kNoAim, touch.passes = true, touch.bounces = touch.closing = touch.slides = false;
   return true;
 }
 
