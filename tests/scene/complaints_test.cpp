@@ -307,7 +307,7 @@ TEST(Diagnostics, OverlapsNameThePairAndTheDepth) {
           "overlap = \"separate\"");
   // not at an event, whose setting has nothing to do with it
   refused(kContact + pair +
-              "position = [2.9, 2.2]\n[[when]]\ntime = 1\ndo = { set = 'room.gravity', to = [0, 1] }",
+              "position = [2.9, 2.2]\n[[when]]\ntime = 1\ndo = [{ set = 'room.gravity', to = [0, 1] }]",
           "a.toml:10:12: 'a' and 'b' overlap by 0.1 m at the start; move them apart, or let them be pushed: "
           "[physics] "
           "overlap = \"separate\"");

@@ -364,7 +364,8 @@ TEST(Rest, ARoomOfAMillionMillionMetresBouncesAlike) {
   world.model.solver = Solver::iterative;
   add_walls(world, 4, 4);
   add_ball(world, 0.1, 0.5, {2.3, 3}, {1, 0}, 0, 0.5);
-  add_box(world, {0.5, 0.3}, 0.7, {2.2, 1}, {0, 0}, std::numbers::pi / 6);
+  add_box(world, {0.5, 0.3}, 0.7, {2.2, 1}, {0, 0}, std::numbers::pi / 6, 0, 0.8);
+  rub(world, 0.5);
   const State<2> want = stepped(world, 600);
   for (const int k : {20, 28, 30, 38}) {
     const State<2> now = stepped(scaled(world, k), 600);
