@@ -2,10 +2,9 @@
 // floor there, a crate on the floor that is welded to the room. No motion says which part of the load such a
 // contact bears and which the joints, so iterations do without it. It bears, of all that comes to the same
 // motion, what is of least norm with the forces of the joints:
-//   min |l + a p|^2 + |p|^2,  p >= 0      l  forces of the joints' rows if it bears nothing, N; N m by the
-//   size
-//                                            of the scene
-//                                         a  what they change by for a unit along each normal
+//   min |l + a p|^2 + |p|^2,  p >= 0
+//     l  forces of the joints' rows if it bears nothing, N; N m by the size of the scene
+//     a  what they change by for a unit along each normal
 // The rows of contacts are those of the middle of the substep, the joints' those of its beginning. They
 // differ by what turns meanwhile, and were both iterated, each would add a push against the other's in each
 // iteration and each substep: a top of 40 kg pressed the floor with 7500 N, and its pivot pulled it down with
