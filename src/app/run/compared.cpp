@@ -24,10 +24,11 @@ constexpr double kHeaviest = 2;         // of lines in small panels
 constexpr double kLeastType = 21;       // page units: em of their words
 constexpr double kAcrossInSpace = 1.5;  // a panel's width over its height
 
-// where the scene has its `vary`
+// where the scene has its `vary`, or the command
 [[noreturn]] void refuse(const scene::Scene& scene, std::string message) {
   scene::Complaint it = scene.film.vary_at;
   it.message = std::move(message);
+  if (it.file.starts_with("--set ")) throw UsageError(it.text());
   throw scene::Error({std::move(it)});
 }
 
