@@ -25,8 +25,7 @@ constexpr double kAslant = 0.05;        // sine of an angle: nearer to each othe
 constexpr double kApart = 1.1;          // widths of an arrow: how far one on another's line moves aside
 constexpr double kHeads = 3;            // the same: so near to each other heads meet
 constexpr double kTail = 1.7;           // widths of an arrow: radius of the dot where it begins
-constexpr double kFull =
-    0.28;  // of an arrow's growth: from here on words of one that leaves the picture are whole
+constexpr double kFull = 0.28;  // of an arrow's growth: from here on words of one that is cut are whole
 constexpr double kValued = 0.14, kValuedFull = 0.18;   // the same: between these a value comes
 constexpr double kLeastGrowth = 0.1;                   // the same: of less an arrow is nothing
 constexpr double kNamedFrom = 0.4, kNamedFull = 0.66;  // the same of a name alone, up to the head's length

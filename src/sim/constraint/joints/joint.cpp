@@ -104,10 +104,10 @@ constexpr double kLeft = 1e-9;  // rad: so far from the wheel's other side it ha
 bool leaves(const JointPose<2>& at) {
   return !at.joint.around.empty() && least_wrap(at) < -kLeft && is_tight(at);
 }
-bool leaves(const JointPose<2>& comes, const JointPose<2>& leaves) {
-  const Joint<2>&p = comes.joint, &q = leaves.joint;
+bool leaves(const JointPose<2>& before, const JointPose<2>& after) {
+  const Joint<2>&p = before.joint, &q = after.joint;
   return p.rope == q.rope && p.b.body == q.a.body && p.on_b.offset != 0 && q.on_a.offset != 0 &&
-         wrap_between(comes, leaves) < -kLeft && is_tight(comes) && is_tight(leaves);
+         wrap_between(before, after) < -kLeft && is_tight(before) && is_tight(after);
 }
 
 }  // namespace

@@ -305,10 +305,10 @@ inline double least_wrap(const JointPose<2>& at) {
 
 /// How far a rope is wrapped around the wheel between two pieces of it that wind on it, rad. It ends where
 /// the other begins.
-inline double wrap_between(const JointPose<2>& comes, const JointPose<2>& leaves) {
-  const double offset = comes.joint.on_b.offset, sign = offset > 0 ? 1 : -1;
-  return wrap_between(comes.joint.on_b.start, leaves.joint.on_a.start, offset) +
-         sign * (leaves.wound.a - comes.wound.b);
+inline double wrap_between(const JointPose<2>& before, const JointPose<2>& after) {
+  const double offset = before.joint.on_b.offset, sign = offset > 0 ? 1 : -1;
+  return wrap_between(before.joint.on_b.start, after.joint.on_a.start, offset) +
+         sign * (after.wound.a - before.wound.b);
 }
 
 /// The row of the drag of a rope with friction; its force is the tension at a less that at b, N. Returns
