@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "app/run/ahead.h"
 #include "app/run/simulation.h"
@@ -16,16 +17,24 @@ namespace {
 
 class Framing : public testing::TestWithParam<std::pair<const char*, const char*>> {};
 
-// looks at all bodies but those whose names begin with `leaves`; `movers`: at none that is fixed either
-void keep(const std::string& name, const scene::Scene& scene, const std::string& leaves, bool movers) {
-  const draw::Illustrator artist = depictor(scene, ahead(scene));
+// four times a second
+std::vector<sim::Snapshot> moments(const scene::Scene& scene) {
+  std::vector<sim::Snapshot> all;
   const auto run = scene.run();
-  sim::SceneInfo cast = run->scene_info();
+  for (std::int64_t k = 0; sim::rational(k) / sim::rational(4) <= scene.duration; ++k)
+    all.push_back(moment(*run, sim::rational(k) / sim::rational(4), scene));
+  return all;
+}
+
+// looks at all bodies but those whose names begin with `leaves`; `movers`: at none that is fixed either
+void keep(const std::string& name, const scene::Scene& scene, const std::vector<sim::Snapshot>& moments,
+          const std::string& leaves, bool movers) {
+  const draw::Illustrator artist = depictor(scene, ahead(scene));
+  sim::SceneInfo cast = scene.run()->scene_info();
   for (sim::SceneInfo::Body& body : cast.bodies) {
     if ((!leaves.empty() && body.name.rfind(leaves, 0) == 0) || (movers && body.fixed)) body.bare = true;
   }
-  for (std::int64_t k = 0; sim::rational(k) / sim::rational(4) <= scene.duration; ++k) {
-    const sim::Snapshot now = moment(*run, sim::rational(k) / sim::rational(4), scene);
+  for (const sim::Snapshot& now : moments) {
     draw::OutmostPlaces places;
     places.add(cast, now);
     for (int panel = 0; panel < artist.panels(); ++panel) {
@@ -44,7 +53,9 @@ TEST_P(Framing, KeepsBodiesInEachPanel) {
   const auto& [name, leaves] = GetParam();
   const std::string path = std::string(OBSCURA_SOURCE_DIR) + "/scenes/" + name + ".toml";
   const std::string text = contents(path);
-  keep(name, scene::parse(text, path), leaves, text.find("\nkeys ") != text.npos);
+  const scene::Scene shipped = scene::parse(text, path);
+  const std::vector<sim::Snapshot> now = moments(shipped);
+  keep(name, shipped, now, leaves, text.find("\nkeys ") != text.npos);
   // the camera of a scene that leads it by hand may leave what stands still behind; by itself it does not
   for (const char* instead : {"", "\nfit = \"run\""}) {
     std::string led = text;
@@ -53,7 +64,7 @@ TEST_P(Framing, KeepsBodiesInEachPanel) {
       if (led[end - 1] == '[') end = led.find("\n]", keys) + 2;
       led.replace(keys, end - keys, instead);
     }
-    keep(name, scene::parse(led, path), leaves, false);
+    keep(name, scene::parse(led, path), now, leaves, false);
   }
 }
 

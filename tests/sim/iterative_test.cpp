@@ -257,10 +257,12 @@ TEST(PlaneIterative, PyramidStands) {
 
 // six seconds in one, and cut at each of some instants, s: the same words
 void expect_cut_is_whole(const Room& begun, std::initializer_list<double> cuts) {
+  Room whole;
+  whole.world = begun.world;
+  whole.run(6);
   for (const double first : cuts) {
-    Room whole, cut;
-    whole.world = cut.world = begun.world;
-    whole.run(6);
+    Room cut;
+    cut.world = begun.world;
     cut.run(first);
     cut.solver.reset();
     cut.run(6 - first);
