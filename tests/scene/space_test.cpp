@@ -1,5 +1,6 @@
 // Scenes in space: three numbers tell it, and what was typed lies where it should.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +10,7 @@
 #include "scene/error.h"
 #include "scene/hull.h"
 #include "scene/scene.h"
+#include "scene/text_run.h"
 #include "sim/math/exponential.h"
 #include "sim/shape/shape.h"
 
@@ -343,6 +345,22 @@ TEST(Space, SetWritesTheThirdNumber) {
   EXPECT_EQ(copies.space().state.x[1], Vec3(0.5, 1.5, 0.5));
   EXPECT_EQ(copies.space().state.turn[0], sim::no_rotation<3>());
   EXPECT_NE(copies.space().state.turn[1], sim::no_rotation<3>());
+}
+
+// A spin along a contact's normal brings no corner nearer to the ground: what spins so, upright on a small
+// foot, needs no more substeps than there are, and nothing says so; what spins across it does.
+TEST(Tops, ThatSpinUprightAreNotSaidToMeetTheGroundTooFast) {
+  const auto told = [](const char* spin) {
+    const TextRun top(fmt::format(
+        "duration = 1\n[room]\nwalls = \"ground\"\nsize = [2, 1, 2]\n[physics]\nsolver = "
+        "\"iterative\"\n[[body]]\nname = \"top\"\nposition = [0, 0.006, 0]\nshapes = [{{ radius = "
+        "0.006 }}, {{ size = [0.05, 0.01, 0.05], position = [0, 0.04, 0] }}]\nspin = {}\n",
+        spin));
+    top.at(0.02);
+    return top.run->limits_met().substeps.steps;
+  };
+  EXPECT_EQ(told("[0, 9000, 0]"), 0);
+  EXPECT_GT(told("[0, 0, 20000]"), 0);
 }
 
 }  // namespace

@@ -81,7 +81,8 @@ void Iterative<D>::wake(StepPart<D> step) {
   part_of_step_ = step.h < (1 - 1e-9) * whole ? step.h / whole : 1;
   least_substep_ =
       part_of_step_ < 1 ? whole / substeps_for(closing_rates_.ruling, whole, fewest_substeps_) : 0;
-  if (closing_rates_.ruling * step.h > 1.0001 * kCloser * substeps_)
+  const double closer = 1.0001 * kCloser * substeps_ / step.h;
+  if (closing_rates_.ruling > closer && approach_rate(step.h) > closer)
     step.state.limits_met.substeps.note(step.state.step);
   notes_.begin(step.state);
 }

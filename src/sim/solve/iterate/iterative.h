@@ -66,6 +66,9 @@ class Iterative : public ContactSolver<D> {
     bool quiet = false;
   };
   virtual ClosingRates closing_rates(double h) const = 0;
+  /// The ruling one, less spins along normals, which bring no corner nearer: whether substeps are too few for
+  /// it is told.
+  virtual double approach_rate(double) const { return closing_rates_.ruling; }
 
   /// Features where bodies have moved since they were found.
   virtual void renew_contacts(StepPart<D> part) = 0;

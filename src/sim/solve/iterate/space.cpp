@@ -109,8 +109,9 @@ bool SpaceIterative::wake_struck(State<D>& state, double h) {
   return true;
 }
 
-// how fast those close that touch, or may within h s, in widths of the narrower body, 1/s
-SpaceIterative::ClosingRates SpaceIterative::closing_rates(double h) const {
+// How fast those close that touch, or may within h s, in widths of the narrower body, 1/s. A spin along the
+// normal brings no corner nearer to the plane between two; `spins_along`: it counts as if it did.
+SpaceIterative::ClosingRates SpaceIterative::rates_of_touches(double h, bool spins_along) const {
   const int n = int(model_.bodies.size());
   const auto closes_by = [&](const ContactConstraint& touch) {
     const Vec<D> u = slip(touch);
@@ -118,7 +119,10 @@ SpaceIterative::ClosingRates SpaceIterative::closing_rates(double h) const {
     if (!(round_[touch.a] && (touch.b == n || round_[touch.b]))) {
       double passes = std::sqrt(u.squaredNorm());
       for (const int body : {touch.a, touch.b}) {
-        if (body < n) passes += bounding_radius_[body] * std::sqrt(moving_[body].w.squaredNorm());
+        if (body == n) continue;
+        const AngularVec<D>& w = moving_[body].w;
+        const double along = spins_along ? 0 : touch.n.dot(w);
+        passes += bounding_radius_[body] * std::sqrt(std::max(0.0, w.squaredNorm() - along * along));
       }
       closes = std::max(closes, kPassing * passes);
     }

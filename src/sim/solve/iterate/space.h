@@ -42,7 +42,9 @@ class SpaceIterative final : public Iterative<3> {
   bool find_contacts(StepPart<D> step) override;
   void update_sleep(StepPart<D> step) override;
   bool wake_struck(State<D>& state, double h);
-  ClosingRates closing_rates(double h) const override;
+  ClosingRates closing_rates(double h) const override { return rates_of_touches(h, true); }
+  double approach_rate(double h) const override { return rates_of_touches(h, false).ruling; }
+  ClosingRates rates_of_touches(double h, bool spins_along) const;
   void renew_contacts(StepPart<D> part) override;
   void move_unconstrained(StepPart<D> part) override;
   BodyMotion<D> begun(int body) const override { return stances_[std::size_t(body)]; }
