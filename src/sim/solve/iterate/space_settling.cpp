@@ -20,8 +20,8 @@ constexpr int kFewTouches = 500;         // of more, less in proportion, but as 
 constexpr int kSettlingRounds = 3;       // so many were of all
 constexpr int kQuietTouches = 400000;    // of islands that are quiet so many, whatever else there is
 constexpr int kQuietRounds = 400;
-constexpr int kManyTouches = 100;     // of islands of so many that move,
-constexpr double kEnough = 0.3;       // speed, of what gravity gives in the substep
+constexpr double kEnough = 0.3;       // speed, of what gravity gives in the substep, where there are
+constexpr int kCrowdTouches = 5000;   // so many; of less, less as the square: a row passes a blow on slowly
 constexpr int kFewExactly = 60;       // touches
 constexpr double kExactly = 1e-12;    // of how fast bodies of an island pass each other,
 constexpr int kExactTouches = 2000;   // within so many touches times iterations
@@ -58,8 +58,11 @@ void SpaceIterative::settle_contacts(double h) {
     island.follows =
         (quiet || island.contacts <= kFewTouches) && island.budget >= kFewestFollowed * island.contacts;
     follows = follows || island.follows;
-    if (island.contacts > kManyTouches && island.rate >= kAllButStill)
-      island.enough = kEnough * kEnough * g_ * g_ * h * h * island.mass;
+    if (island.contacts > kFewTouches && island.rate >= kAllButStill) {
+      const double crowded = std::min(1.0, double(island.contacts) / kCrowdTouches);
+      const double speed = kEnough * crowded * crowded * g_ * h;
+      island.enough = speed * speed * island.mass;
+    }
   }
   batches_.set_islands(settling_);
   if (follows) batches_.begin_directions();
