@@ -322,6 +322,36 @@ def test_states_are_saved_restored_and_set():
     assert world.read("b.velocity.x") == 1 and world.energies.kinetic == 1
 
 
+def test_a_body_is_not_set_outside_the_room():
+    scene = obscura.Scene(room={"size": [4, 4]}, ball=[{"name": "b", "radius": 0.1, "position": [2, 2]}])
+    world = scene.world()
+    for place, wall in (([100, 2], "96.1 m beyond the right wall"), ([2, -5], "the floor"), ([0.05, 2], "the left wall")):
+        with pytest.raises(obscura.UsageError, match=f"b would be outside the room: .*{wall}"):
+            world.positions = [place]
+    assert world.positions.tolist() == [[2, 2]]
+    world.positions = [[0.1, 3.9]]  # in a corner
+    world.step()
+
+
+@pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+def test_what_a_run_has_come_to_can_be_set(path):
+    scene = obscura.Scene(path)
+    there, world = scene.world(), scene.world()
+    try:
+        there.step_to(1)
+    except obscura.RunError:
+        pass
+    for name in ("positions", "turns", "velocities", "spins"):
+        try:
+            setattr(world, name, getattr(there, name))
+        except obscura.UsageError as error:
+            assert "outside" not in str(error)
+    try:
+        world.step()
+    except obscura.RunError as error:
+        assert "outside" not in str(error)
+
+
 def test_contacts_and_events():
     scene = obscura.Scene({"room": {"size": [4, 4]}, "physics": {"collision": "event"},
                            "ball": [{"name": "ball", "radius": 0.1, "position": [2, 1], "elasticity": 0.5}],
