@@ -69,19 +69,24 @@ void set(StageView& stage, const Array& to) {
   std::memcpy(its.mutable_data(), to.data(), std::size_t(its.nbytes()));
 }
 
-// The function of Python behind a force; it may be let go in any thread.
+// The function of Python behind a force. Copies of it are in scenes, worlds and renderers of C++, where
+// Python's collector does not look: a function that refers to its world would never be let go. So this has a
+// weak reference to what holds the function, and the objects of Python keep that (obscura/scene.py). It may
+// be let go in any thread.
 struct Callable {
-  explicit Callable(py::function of)
-      : function(new py::function(std::move(of)), [](py::function* it) {
+  explicit Callable(const py::object& holder)
+      : held(new py::weakref(holder), [](py::weakref* it) {
           if (!Py_IsInitialized()) return;
           const py::gil_scoped_acquire locked;
           delete it;
         }) {}
-  std::shared_ptr<py::function> function;
+  std::shared_ptr<py::weakref> held;
 
   py::object called(const StageView& view) const {
+    const py::object holder = (*held)();
+    if (holder.is_none()) throw UsageError("the function of a force is gone");
     try {
-      return (*function)(view);
+      return holder.attr("function")(view);
     } catch (py::error_already_set& error) {
       // it would end the loop over frames in which the force is called
       if (!error.matches(PyExc_StopIteration)) throw;
@@ -142,6 +147,7 @@ void add_scene(py::module_& module) {
       .def("__repr__", [](const Body& it) { return "<Body " + it.name + ", a " + it.kind + ">"; });
 
   py::class_<Scene>(module, "Scene")
+      .def(py::init<const Scene&>())
       .def_static(
           "read",
           [](const std::string& file, const std::vector<std::string>& sets) {
@@ -158,10 +164,8 @@ void add_scene(py::module_& module) {
           "build",
           [](const py::handle& keys, const std::string& name) { return Builder(table(keys)).build(name); },
           py::arg("keys"), py::arg("name") = "scene")
-      .def("with_key", [](const Scene& it, const std::string& key,
-                          const py::handle& to) { return it.with(key, value(to)); })
       .def("with_force", [](const Scene& it, const std::string& name,
-                            py::function force) { return it.with_force(name, Callable(std::move(force))); })
+                            const py::object& holder) { return it.with_force(name, Callable(holder)); })
       .def("keys", [](const Scene& it) { return dict(it.keys()); })
       .def_property_readonly("name", &Scene::name)
       .def_property_readonly("file", &Scene::file)

@@ -124,7 +124,9 @@ void add_world(py::module_& module) {
             return state;
           }));
 
-  py::class_<World>(module, "World", py::dynamic_attr())
+  // Its attributes are those of the class in obscura/scene.py: with py::dynamic_attr() Python 3.11 would
+  // count them twice, and never collect a world of a cycle.
+  py::class_<World>(module, "World")
       .def(py::init([](const Scene& scene, int threads) {
              return unlocked([&] { return World(scene, threads); });
            }),

@@ -1,6 +1,7 @@
 """The Python module: scenes, worlds, forces, frames and films. Run by tests/python/check."""
 
 import copy
+import gc
 import inspect
 import json
 import os
@@ -9,6 +10,7 @@ import re
 import subprocess
 import sys
 import tomllib
+import weakref
 from pathlib import Path
 
 import numpy as np
@@ -540,6 +542,37 @@ def test_what_a_force_raises_comes_out_and_the_step_is_not_taken():
     with pytest.raises(obscura.RunError) as found:
         scene.world().step()
     assert found.value.body == "b" and found.value.quantity == "force"
+
+
+def test_a_force_that_refers_to_its_world_is_collected():
+    def made():
+        scene, own = room(), []
+        scene.add_force(lambda stage: len(own) * 0 * stage.positions, "own")
+        scene.add_force(spring)
+        world, renderer = scene.world(), scene.frames(**SMALL)
+        own.extend([scene, world, renderer, scene.copy()])
+        world.step()
+        renderer.draw(world)
+        return [weakref.ref(each) for each in own]
+
+    gc.collect()
+    kept = made()
+    gc.collect()
+    assert [each() for each in kept] == [None] * 4
+
+
+def test_a_force_lives_as_long_as_what_calls_it():
+    calls = []
+    scene = room()
+    scene.add_force(lambda stage: calls.append(1), "counted")
+    world, renderer = scene.world(), scene.frames(**SMALL)
+    del scene
+    gc.collect()
+    before = len(calls)
+    world.step()
+    between = len(calls)
+    next(renderer), next(renderer)
+    assert before < between < len(calls)
 
 
 # --- pictures and films

@@ -18,6 +18,27 @@ from .errors import FileError, SceneError, UsageError
 from .keys import Section, plain, schema
 
 
+class _Holder:
+    """What holds the function of a force: C++ refers to it weakly, so that Python's collector finds all cycles."""
+
+    __slots__ = ("function", "__weakref__")
+
+    def __init__(self, function: Callable):
+        self.function = function
+
+
+class _Built(_obscura.Scene):
+    """A scene of C++ with the holders of its forces, which live as long as it does."""
+
+    def __init__(self, scene: _obscura.Scene, holders: tuple[_Holder, ...] = ()):
+        super().__init__(scene)
+        self._holders = holders
+
+    def with_function(self, name: str, function: Callable) -> "_Built":
+        holder = _Holder(function)
+        return _Built(self.with_force(name, holder), (*self._holders, holder))
+
+
 class Figure:
     """A figure for print, as SVG."""
 
@@ -109,8 +130,9 @@ class Scene(Section):
                 made = _obscura.Scene.parse(*source)
             else:
                 made = _obscura.Scene.build(self._own, source[0])
+            made = _Built(made)
             for name, force in self._forces:
-                made = made.with_force(name, force)
+                made = made.with_function(name, force)
             self.__dict__["_made"] = made
         return self._made
 
@@ -193,7 +215,7 @@ class Scene(Section):
             raise TypeError(f"a force is a function of a stage, not {force!r}")
         name = name or getattr(force, "__name__", "force")
         self.remove_force(name)
-        made = self._built().with_force(name, force)
+        made = self._built().with_function(name, force)
         self._forces.append((name, force))
         self.__dict__["_made"] = made
 
@@ -302,7 +324,9 @@ class World(_obscura.World):
     def __init__(self, scene: Scene, threads: int = 1):
         if not isinstance(scene, Scene):
             raise TypeError(f"a world is of a Scene, not of {scene!r}")
-        super().__init__(scene._built(), threads)
+        # it holds the functions of forces
+        object.__setattr__(self, "_made", scene._built())
+        super().__init__(self._made, threads)
         # as it is now: what is changed of it later is the next world's
         object.__setattr__(self, "_scene", scene.copy())
         object.__setattr__(self, "_threads", threads)
@@ -340,7 +364,9 @@ class Renderer(_obscura.Renderer):
     def __init__(self, scene: Scene, **options: Any):
         if not isinstance(scene, Scene):
             raise TypeError(f"a renderer is of a Scene, not of {scene!r}")
-        super().__init__(scene._built(), **options)
+        # it holds the functions of forces
+        self._made = scene._built()
+        super().__init__(self._made, **options)
 
 
 class Movie(_obscura.Movie):
