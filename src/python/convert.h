@@ -22,6 +22,16 @@ pybind11::dict dict(const Table& from);
 /// "2 x 5": an array's shape in messages.
 std::string shape(const pybind11::array& of);
 
+/// Refuses objects whose __init__ has not run, as T.__new__(T) makes them: pybind11 would work on memory that
+/// nobody has filled.
+template <class T>
+void refuse_unmade() {
+  pybind11::detail::get_type_info(typeid(T), true)->operator_new = [](std::size_t) -> void* {
+    const auto name = pybind11::type::of<T>().attr("__name__").template cast<std::string>();
+    throw pybind11::type_error("this " + name + " was not made: its __init__ has not run");
+  };
+}
+
 /// A member as Python keeps it in a pickle, and back.
 template <class Member>
 pybind11::object kept(const Member& member) {

@@ -282,6 +282,8 @@ void add_film(py::module_& module) {
         unlocked([&] { movie.close(); });
       });
 
+  refuse_unmade<Picture>(), refuse_unmade<Drawing>(), refuse_unmade<Recording>();
+
   module.def("render", [](const Scene& scene, const std::string& out, const py::kwargs& how) {
     const FilmOptions made = options(how);
     unlocked([&] { film(scene, out, made); });

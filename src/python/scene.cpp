@@ -178,6 +178,8 @@ void add_scene(py::module_& module) {
       .def_property_readonly("warnings", &Scene::warnings)
       .def_property_readonly("hash", &Scene::hash);
 
+  refuse_unmade<StageView>(), refuse_unmade<Body>(), refuse_unmade<Scene>();
+
   module.def(
       "toml", [](const py::handle& keys) { return Builder(table(keys)).text(); }, "A scene's keys as TOML.");
   module.def("check_key",

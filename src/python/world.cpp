@@ -169,6 +169,9 @@ void add_world(py::module_& module) {
       .def("save", &World::save, "The whole state, as a value.")
       .def("restore", &World::restore, py::arg("state"), "Goes on from a state of this scene.")
       .def_property_readonly("hash", &World::hash, "Of the state: equal for equal runs, to the bit.");
+
+  refuse_unmade<Contact>(), refuse_unmade<Pair>(), refuse_unmade<Event>(), refuse_unmade<Energies>();
+  refuse_unmade<State>(), refuse_unmade<World>();
 }
 
 }  // namespace obscura::python

@@ -575,6 +575,31 @@ def test_a_force_lives_as_long_as_what_calls_it():
     assert before < between < len(calls)
 
 
+# --- arguments
+
+
+@pytest.mark.parametrize("name", ["Body", "Contact", "Energies", "Event", "Frame", "Movie", "Pair", "Renderer", "Scene", "Stage",
+                                  "State", "World"])
+def test_what_was_not_made_is_an_error_and_no_crash(name):
+    program = f"""
+import obscura
+for of in (obscura, obscura._obscura):
+    made = of.{name}.__new__(of.{name})
+    for member in {{*dir(type(made))}} - set(dir(object)):
+        try:
+            found = getattr(made, member)
+            for arguments in ((), (made,), (1,), ("a",), (None, None, None)):
+                try:
+                    found(*arguments)
+                except Exception as error:
+                    assert not isinstance(error, SystemError)
+        except Exception as error:
+            assert not isinstance(error, SystemError)
+"""
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+
+
 # --- pictures and films
 
 
