@@ -22,6 +22,14 @@ pybind11::dict dict(const Table& from);
 /// "2 x 5": an array's shape in messages.
 std::string shape(const pybind11::array& of);
 
+using Numbers = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
+/// An array, or what becomes one, of real numbers. Throws TypeError for what is none, and for text and
+/// complex numbers; `what` begins the message: "a force returned forces: no array of numbers: 'a'".
+Numbers numbers(pybind11::handle from, const std::string& what);
+
+/// "'a'", "[1, 2, ...": a value in messages, cut where it is long.
+std::string shown(pybind11::handle value);
+
 /// Refuses objects whose __init__ has not run, as T.__new__(T) makes them: pybind11 would work on memory that
 /// nobody has filled.
 template <class T>

@@ -15,20 +15,18 @@ namespace py = pybind11;
 
 namespace {
 
-using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
 // Zeros whose memory a capsule owns: NumPy's resize(), which would move what the run reads, refuses such.
-Array zeros(std::vector<py::ssize_t> shape) {
+Numbers zeros(std::vector<py::ssize_t> shape) {
   std::size_t size = 1;
   for (const py::ssize_t each : shape) size *= std::size_t(each);
   auto* const memory = new double[size]();
   const py::capsule owner(memory, [](void* its) { delete[] static_cast<double*>(its); });
-  return Array(std::move(shape), memory, owner);
+  return Numbers(std::move(shape), memory, owner);
 }
 
 // an array of its own: what Python keeps of a stage stays what it was
-Array copied(const Columns& of, std::vector<py::ssize_t> shape) {
-  Array array = zeros(std::move(shape));
+Numbers copied(const Columns& of, std::vector<py::ssize_t> shape) {
+  Numbers array = zeros(std::move(shape));
   std::memcpy(array.mutable_data(), of.first, of.size() * sizeof(double));
   return array;
 }
@@ -36,18 +34,15 @@ Array copied(const Columns& of, std::vector<py::ssize_t> shape) {
 // An instant within a step, as Python's forces see it.
 struct StageView {
   double time = 0;
-  Array positions, velocities, spins, orientations, forces, torques;
+  Numbers positions, velocities, spins, orientations, forces, torques;
 };
 
 // adds the answer of a force, if it returns one, forces or forces and torques, and not what it has filled
-void add(const py::handle answer, Array& to, const char* what) {
-  const Array given = Array::ensure(answer);
-  if (!given)
-    throw py::type_error(std::string("a force returned ") + what +
-                         " that are no array of numbers: " + std::string(py::repr(answer)));
+void add(const py::handle answer, Numbers& to, const char* what, const char* hint = "") {
+  const Numbers given = numbers(answer, std::string("a force returned ") + what);
   if (given.size() != to.size())
     throw py::value_error(std::string("a force returned ") + std::to_string(given.size()) + " numbers of " +
-                          what + ", expected " + std::to_string(to.size()));
+                          what + ", expected " + std::to_string(to.size()) + hint);
   // columns for rows are as many numbers
   if (given.ndim() > 1 && shape(given) != shape(to))
     throw py::value_error(std::string("a force returned ") + what + " of " + shape(given) + ", expected " +
@@ -60,9 +55,10 @@ void add(const py::handle answer, Array& to, const char* what) {
 }
 
 // `stage.forces += f` sets what it has changed in place
-template <Array StageView::*Of>
-void set(StageView& stage, const Array& to) {
-  Array& its = stage.*Of;
+template <Numbers StageView::*Of>
+void set(StageView& stage, const py::object& given) {
+  Numbers& its = stage.*Of;
+  const Numbers to = numbers(given, "what a force fills");
   if (to.data() == its.data()) return;
   if (to.size() != its.size() || (to.ndim() > 1 && shape(to) != shape(its)))
     throw py::value_error("an array of " + shape(to) + ", expected " + shape(its) + ": a row a body");
@@ -109,10 +105,11 @@ struct Callable {
                    copied(stage.orientations, {n, d, d}),
                    zeros(rows(d)),
                    zeros(rows(spins))};
-    Array forces = view.forces, torques = view.torques;
+    Numbers forces = view.forces, torques = view.torques;
     const py::object answer = called(view);
     if (py::isinstance<py::tuple>(answer) && py::len(answer) == 2) {
-      add(answer[py::int_(0)], forces, "forces"), add(answer[py::int_(1)], torques, "torques");
+      constexpr const char* kHint = ": a tuple of two is forces and torques";
+      add(answer[py::int_(0)], forces, "forces", kHint), add(answer[py::int_(1)], torques, "torques", kHint);
     } else if (!answer.is_none()) {
       add(answer, forces, "forces");
     }

@@ -575,6 +575,23 @@ def test_a_force_lives_as_long_as_what_calls_it():
     assert before < between < len(calls)
 
 
+def test_text_and_complex_numbers_are_no_columns():
+    world = room().world()
+    for wrong in ("abc", None, [[1, 2], [3]], np.array([["1", "2"]]), np.array([[1 + 1j, 2]])):
+        with pytest.raises(TypeError, match="a column of 1 x 2: no array of numbers"):
+            world.velocities = wrong
+        scene = room()
+        scene.add_force(lambda stage: (wrong, 0), "wrong")
+        with pytest.raises(TypeError, match="a force returned forces: no array of numbers"):
+            scene.world().step()
+    scene = room()
+    scene.add_force(lambda stage: (0.0, 1.0), "of one body")
+    with pytest.raises(ValueError, match="returned 1 numbers of forces, expected 2: a tuple of two is forces and torques"):
+        scene.world().step()
+    world.velocities = np.array([[1, 2]], np.float32)[:, ::-1]
+    assert world.velocities.tolist() == [[2, 1]]
+
+
 # --- arguments
 
 
@@ -598,6 +615,47 @@ for of in (obscura, obscura._obscura):
 """
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
+
+
+WRONG = {
+    "world.step(1.5)": "whole number of steps.*not 1.5",
+    "world.step('a')": "whole number of steps.*not 'a'",
+    "world.step(10**30)": "whole number of steps",
+    "world.step(1, 2)": "takes from 1 to 2 positional arguments",
+    "world.step_to('1')": "number of seconds, not '1'",
+    "world.body(0)": "name of a body, not 0",
+    "world.read(0)": "takes a name, as 'energy.total', not 0",
+    "world.restore(b'')": "what save\\(\\) gave",
+    "obscura.World(scene, threads='2')": "threads is a whole number",
+    "obscura.Scene(3)": "file's name, or keys as a dict",
+    "obscura.Scene({3: 4})": "keys of a scene are words, not 3",
+    "obscura.Scene('[room]\\nsize = [4, 4]\\n')": "Scene.parse\\(text\\)",
+    "obscura.Scene.parse(Path('a.toml'))": "reads a file",
+    "obscura.Scene.parse('', sets=[1])": "'sets' is a list of words",
+    "scene.add_force(spring, name=3)": "name of a force is a word",
+    "scene.frames(width=1.5)": "width is a whole number of pixels, not 1.5",
+    "scene.frames(theme=3)": "theme is 'paper' or 'screen', not 3",
+    "scene.frames(start='a')": "start is a number of seconds, not 'a'",
+    "scene.frames(**SMALL).at('1')": "number of seconds, not '1'",
+    "scene.frames(**SMALL).draw(scene)": "takes a World, not <Scene",
+    "scene.still('a', 'b.png')": "number of seconds, not 'a'",
+    "scene.render('a\\0.mp4')": "no zero in it",
+    "scene.render(os.fsdecode(b'\\xff.mp4'))": "path is of UTF-8",
+    "scene.picture('a')": "number of seconds",
+    "obscura.Movie('a.mp4', scene)": "is of a Renderer",
+    "scene.sweep('b.mass=1', 'energy.total')": "'vary' is a list",
+    "scene.sweep({'b.mass': 1}, 'energy.total')": "b.mass: expected a list of values, not 1",
+    "scene.sweep({'b.mass': [1]}, [3])": "'measure' is a list of words",
+    "scene.sweep({'b.mass': [1]}, 'energy.total', jobs='a')": "jobs is a whole number",
+}
+
+
+@pytest.mark.parametrize("code", WRONG)
+def test_a_wrong_argument_is_told_in_one_line(code):
+    scene = room()
+    with pytest.raises((TypeError, ValueError), match=WRONG[code]) as found:
+        eval(code, globals(), {"scene": scene, "world": scene.world()})
+    assert "\n" not in str(found.value) and "incompatible" not in str(found.value)
 
 
 # --- pictures and films
