@@ -159,6 +159,45 @@ def test_a_list_changed_in_place_changes_the_scene():
         room().world().velocity = [[1, 0]]
 
 
+def test_what_is_no_longer_in_the_scene_changes_nothing_without_a_word():
+    scene = room()
+    old = scene.ball[0].position
+    scene.ball[0].position = [1, 1]
+    with pytest.raises(obscura.UsageError, match="replaced: ask for it again, as scene.ball.0..position"):
+        old[0] = 3.5
+    assert scene.ball[0].position == [1, 1]
+    gone = scene.ball.add(name="gone", radius=0.1, position=[1, 3])
+    kept = scene.ball.add(name="kept", radius=0.1, position=[3, 3])
+    del scene.ball["gone"]
+    with pytest.raises(obscura.UsageError, match="no longer in the scene"):
+        gone.radius = 0.2
+    kept.radius = 0.2
+    assert scene.ball["kept"].radius == 0.2 and scene.ball[0].radius == 0.1
+    for wrong, told in ((lambda: scene.ball.radius, r"scene\.ball\[0\]\.radius"), (lambda: scene.ball.append({}), "scene.ball.add"),
+                        (lambda: scene.ball[0:1], "by its number or name")):
+        with pytest.raises((AttributeError, TypeError), match=told):
+            wrong()
+    scene.room = 5
+    assert repr(scene.room) == "<room: {}>"
+    with pytest.raises(obscura.SceneError, match="expected a table, got 5"):
+        scene.world()
+
+
+def test_a_class_of_worlds_has_attributes_of_its_own():
+    class Task(obscura.World):
+        def __init__(self, scene):
+            super().__init__(scene)
+            self.goal = 3
+
+    task = Task(room())
+    task.step()
+    assert task.goal == 3 and task.steps == 1
+    with pytest.raises(AttributeError, match="did you mean 'velocities'"):
+        task.velocity = 1
+    with pytest.raises(AttributeError, match="a world has no 'goal'"):
+        room().world().goal = 3
+
+
 def test_copies_and_pickles_keep_what_was_read(tmp_path):
     (tmp_path / "a.toml").write_text(room().text)
     scene = obscura.Scene(tmp_path / "a.toml")

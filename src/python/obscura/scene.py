@@ -423,8 +423,10 @@ class World(_obscura.World):
 
     def __setattr__(self, name: str, value: Any) -> None:
         if not isinstance(getattr(type(self), name, None), property):
-            near = difflib.get_close_matches(name, [each for each in dir(type(self)) if not each.startswith("_")], 1)
-            raise AttributeError(f"a world has no '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))
+            near = difflib.get_close_matches(name, [each for each in dir(World) if not each.startswith("_")], 1)
+            # a class of one's own may have attributes of its own
+            if type(self) is World or near:
+                raise AttributeError(f"a world has no '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))
         super().__setattr__(name, value)
 
     def __reduce__(self):
