@@ -1,6 +1,7 @@
 """The Python module: scenes, worlds, forces, frames and films. Run by tests/python/check."""
 
 import copy
+import functools
 import gc
 import inspect
 import json
@@ -583,6 +584,32 @@ def test_what_a_force_raises_comes_out_and_the_step_is_not_taken():
     assert found.value.body == "b" and found.value.quantity == "force"
 
 
+def test_a_second_force_without_a_name_of_its_own_does_not_replace_the_first():
+    def push(f):
+        def made(stage):
+            return np.full((1, 2), f)
+        return made
+
+    class Field:
+        def pull(self, stage):
+            return 0 * stage.positions
+
+    for first, second in ((lambda stage: [[1, 0]], lambda stage: [[0, 1]]), (push(1), push(2)), (Field().pull, Field().pull),
+                          (functools.partial(spring), functools.partial(spring))):
+        scene = room()
+        scene.add_force(first)
+        scene.add_force(first)
+        with pytest.raises(obscura.UsageError, match="already: add_force.force, name=...."):
+            scene.add_force(second)
+        scene.add_force(second, "second")
+        assert [force for _, force in scene._forces] == [first, second]
+    # a cell of a notebook that runs again
+    for _ in range(2):
+        exec("def again(stage): return 0 * stage.positions", here := {})
+        scene.add_force(here["again"])
+    assert len(scene._forces) == 3
+
+
 def test_a_force_that_refers_to_its_world_is_collected():
     def made():
         scene, own = room(), []
@@ -682,6 +709,7 @@ WRONG = {
     "scene.render(os.fsdecode(b'\\xff.mp4'))": "path is of UTF-8",
     "scene.picture('a')": "number of seconds",
     "obscura.Movie('a.mp4', scene)": "is of a Renderer",
+    "obscura.Movie('a.mp4', size=(16, 16), fps=10, start=1)": "has no start: that is a renderer's",
     "scene.sweep('b.mass=1', 'energy.total')": "'vary' is a list",
     "scene.sweep({'b.mass': 1}, 'energy.total')": "b.mass: expected a list of values, not 1",
     "scene.sweep({'b.mass': [1]}, [3])": "'measure' is a list of words",

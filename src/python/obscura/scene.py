@@ -219,13 +219,19 @@ class Scene(Section):
 
         force(stage) returns forces (N, a row a body), or forces and torques, or fills stage.forces and stage.torques.
         Its answer follows from the stage alone. A film of such a scene cannot be verified, and says so. One of the
-        same name takes the place of that which was added before.
+        same name takes the place of that which was added before, as where a cell of a notebook runs again; of
+        functions without a name of their own, as lambdas, a second one needs `name`.
         """
         if not callable(force):
             raise TypeError(f"a force is a function of a stage, not {force!r}")
         if not isinstance(name, (str, type(None))):
             raise TypeError(f"the name of a force is a word, not {_shown(name)}")
-        name = name or getattr(force, "__name__", "force")
+        if not name:
+            name = getattr(force, "__name__", "force")
+            old = dict(self._forces).get(name)
+            if old is not None and _another(old, force):
+                raise UsageError(f"there is a force called '{name}' already: add_force(force, name=...) adds another, "
+                                 f"or takes the place of the one of that name")
         self.remove_force(name)
         made = self._built().with_function(name, force)
         self._forces.append((name, force))
@@ -310,6 +316,18 @@ def _words(words: Sequence[str], what: str = "sets", example: str = "['ball.elas
         if not isinstance(each, str):
             raise TypeError(f"'{what}' is a list of words, as in {what}={example}, not of {_shown(each)}")
     return words
+
+
+def _another(old: Callable, new: Callable) -> bool:
+    """Whether two forces of one name are likely meant both: lambdas, functions that one function has made, methods of
+    two objects. What was written again is the old one anew."""
+    if old is new or old == new:
+        return False
+    name = getattr(new, "__name__", "<lambda>")
+    if name == "<lambda>":
+        return True
+    code = [getattr(getattr(each, "__func__", each), "__code__", None) for each in (old, new)]
+    return code[0] is code[1]
 
 
 def _shown(value: Any) -> str:
@@ -469,8 +487,8 @@ class Renderer(_obscura.Renderer):
 class Movie(_obscura.Movie):
     """A movie file that takes frames, of a renderer or arrays of height x width x 3 or 4 bytes.
 
-    with Movie("a.mp4", renderer) as movie: movie.add(frame). Without a renderer it needs size and fps. An exception
-    within leaves no file.
+    with Movie("a.mp4", renderer) as movie: movie.add(frame). Without a renderer it needs size and fps. Options: crf,
+    preset, codec, transparent. An exception within leaves no file.
     """
 
     def __init__(self, path: str | os.PathLike, renderer: Renderer | None = None, **options: Any):
@@ -479,4 +497,7 @@ class Movie(_obscura.Movie):
         for name in ("size", "width", "height", "fps"):
             if renderer is not None and name in options:
                 raise TypeError(f"a movie of a renderer has the renderer's {name}")
+        for name in ("theme", "camera", "start", "end", "jobs"):
+            if name in options:
+                raise TypeError(f"a movie of frames has no {name}: that is a renderer's option")
         super().__init__(_path(path), renderer, **options)
