@@ -117,6 +117,7 @@ struct Value {
   Value(double x) : is(x) {}
   Value(bool x) : is(x) {}
   Value(const char* text) : is(std::string(text)) {}
+  Value(const void*) = delete;  // other pointers are no truths
   Value(std::string text) : is(std::move(text)) {}
   Value(std::initializer_list<Value> list) : is(List(list)) {}
   Value(List list) : is(std::move(list)) {}

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <type_traits>
 
 #include "obscura/obscura.h"
 #include "scene/canonical.h"
@@ -154,6 +155,20 @@ TEST(Builder, AFaultNamesOtherPlacesByTheirKeys) {
     EXPECT_THAT(error.what(), testing::HasSubstr("room.size"));
     EXPECT_THAT(error.what(), testing::Not(testing::ContainsRegex("two:[0-9]")));
   }
+}
+
+TEST(Builder, APointerIsNoTruth) {
+  static_assert(!std::is_constructible_v<Value, const int*> &&
+                !std::is_constructible_v<Value, const char8_t*>);
+  static_assert(std::is_constructible_v<Value, char*> && std::is_constructible_v<Value, const char(&)[2]>);
+  EXPECT_EQ(Value("a"), Value(std::string("a")));
+}
+
+TEST(Scene, WithTakesAKeyAlone) {
+  const Scene scene = Scene::parse("[room]\nsize = [4, 2.25]\n");
+  EXPECT_EQ(scene.with("title", "x").with("title", "y").hash(), scene.with("title", "y").hash());
+  // it was read as the title 3="x"
+  EXPECT_THROW(scene.with("title=3", "x"), UsageError);
 }
 
 TEST(Builder, TextComesThroughWhateverStandsInIt) {
