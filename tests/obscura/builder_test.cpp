@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <type_traits>
 
@@ -125,6 +126,24 @@ TEST(Builder, AnUnknownKeyIsRefusedWhereItIsGiven) {
   EXPECT_THROW(builder.add("ball", {{"radios", 1}}), SceneError);
   EXPECT_THROW(builder.add("ball", {{"copies", Table{{"coutn", 3}}}}), SceneError);
   EXPECT_TRUE(builder.keys().empty() || builder.text().empty());
+}
+
+TEST(Builder, AKeyThatIsGivenTwiceIsRefusedByItsName) {
+  // its message named a line of a text that nobody had written
+  for (const auto& twice :
+       std::vector<std::function<void()>>{[] {
+                                            Builder(Table{{"room", Table{{"drag", 1}, {"drag", 2}}}});
+                                          },
+                                          [] {
+                                            Builder().add("room", {{"drag", 1}, {"drag", 2}});
+                                          }})
+    try {
+      twice();
+      FAIL();
+    } catch (const SceneError& error) {
+      EXPECT_EQ(error.faults[0].key, "room.drag");
+      EXPECT_EQ(error.faults[0].message, "'drag' is given twice");
+    }
 }
 
 TEST(Builder, AWrongValueIsAFaultOfItsKey) {
