@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <set>
 #include <system_error>
 
 #include "obscura/inside.h"
@@ -145,11 +146,13 @@ void known(const std::string& path) {
   throw SceneError({{"scene", 0, 0, path, "unknown key '" + last + "'" + scene::did_you_mean(last, words)}});
 }
 
-// the keys of a table, and those of tables within
+// the keys of a table, each once, and those of tables within
 void known(const std::string& owner, const Table& table) {
+  std::set<std::string_view> seen;
   for (const auto& [key, value] : table) {
     const std::string path = owner.empty() ? key : owner + "." + key;
     known(path);
+    if (!seen.insert(key).second) throw SceneError({{"scene", 0, 0, path, "'" + key + "' is given twice"}});
     if (scene::keys_of(path).empty()) continue;
     if (is_table(value)) known(path, std::get<Table>(value.is));
     if (is_tables(value))

@@ -117,6 +117,7 @@ struct Value {
   Value(double x) : is(x) {}
   Value(bool x) : is(x) {}
   Value(const char* text) : is(std::string(text)) {}
+  Value(const void*) = delete;  // other pointers are no truths
   Value(std::string text) : is(std::move(text)) {}
   Value(std::initializer_list<Value> list) : is(List(list)) {}
   Value(List list) : is(std::move(list)) {}
@@ -315,7 +316,9 @@ class World {
   int first_turning() const;
 
   // What is set holds from the next step on; what sleeps wakes. Throws UsageError for columns of another
-  // size, numbers that are not finite, links of chains and bodies with bonds.
+  // size, numbers that are not finite, bodies that would be outside the room, links of chains and bodies with
+  // bonds. Where positions and turns have to go together, it is the next step that throws RunError for a body
+  // outside the room: either may be set first.
   void set_positions(std::span<const double> all);
   void set_velocities(std::span<const double> all);
   void set_turns(std::span<const double> all);

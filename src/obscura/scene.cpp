@@ -6,6 +6,7 @@
 #include "app/run/trouble.h"
 #include "obscura/inside.h"
 #include "scene/canonical.h"
+#include "scene/complaints.h"
 #include "sim/step/snapshots.h"
 
 namespace obscura {
@@ -88,6 +89,8 @@ Scene Scene::parse(const std::string& text, const std::string& name, const std::
 }
 
 Scene Scene::with(std::string_view key, const Value& value) const {
+  if (key.find('=') != key.npos)
+    throw UsageError(fmt::format("with: the key {} has a value of its own", scene::in_quotes(key)));
   return guarded([&] {
     std::vector<std::string> sets = inside().scene.sets;
     sets.push_back(std::string(key) + "=" + literal(value));

@@ -117,6 +117,32 @@ std::string shape(const py::array& of) {
   return text;
 }
 
+std::string shown(py::handle value) {
+  constexpr std::size_t kLongest = 100;
+  // on one line
+  const auto text = py::str(" ").attr("join")(py::repr(value).attr("split")()).cast<std::string>();
+  if (text.size() <= kLongest) return text;
+  // not within a letter of several bytes
+  std::size_t end = kLongest;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  return text.substr(0, end) + "...";
+}
+
+Numbers numbers(py::handle from, const std::string& what) {
+  const auto refuse = [&](const std::string& got) {
+    throw py::type_error(what + ": no array of numbers: " + got);
+  };
+  // of None NumPy makes a number that is none
+  const py::array all = from.is_none() ? py::array() : py::array::ensure(from);
+  if (!all || from.is_none()) refuse(shown(from));
+  const char kind = all.dtype().kind();
+  if (kind != 'f' && kind != 'i' && kind != 'u' && kind != 'b' && kind != 'O')
+    refuse(kind == 'c' ? "they are complex" : shown(from));
+  const Numbers made = Numbers::ensure(all);
+  if (!made) refuse(shown(from));
+  return made;
+}
+
 // Work counts from before the lock is let go until it is held again.
 Unlocked::Unlocked() {
   ++working;

@@ -22,6 +22,24 @@ pybind11::dict dict(const Table& from);
 /// "2 x 5": an array's shape in messages.
 std::string shape(const pybind11::array& of);
 
+using Numbers = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
+/// An array, or what becomes one, of real numbers. Throws TypeError for what is none, and for text and
+/// complex numbers; `what` begins the message: "a force returned forces: no array of numbers: 'a'".
+Numbers numbers(pybind11::handle from, const std::string& what);
+
+/// "'a'", "[1, 2, ...": a value in messages, cut where it is long.
+std::string shown(pybind11::handle value);
+
+/// Refuses objects whose __init__ has not run, as T.__new__(T) makes them: pybind11 would work on memory that
+/// nobody has filled.
+template <class T>
+void refuse_unmade() {
+  pybind11::detail::get_type_info(typeid(T), true)->operator_new = [](std::size_t) -> void* {
+    const auto name = pybind11::type::of<T>().attr("__name__").template cast<std::string>();
+    throw pybind11::type_error("this " + name + " was not made: its __init__ has not run");
+  };
+}
+
 /// A member as Python keeps it in a pickle, and back.
 template <class Member>
 pybind11::object kept(const Member& member) {

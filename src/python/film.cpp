@@ -19,6 +19,16 @@ namespace {
 
 using Pixels = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>;
 
+// an option's value, or TypeError
+template <class T>
+T option(const std::string& name, const py::handle& value, const char* kind) {
+  try {
+    return value.cast<T>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(name + " is " + kind + ", not " + shown(value));
+  }
+}
+
 FilmOptions options(const py::kwargs& given) {
   FilmOptions made;
   for (const auto& [key, value] : given) {
@@ -29,35 +39,35 @@ FilmOptions options(const py::kwargs& given) {
       try {
         size = value.cast<std::pair<int, int>>();
       } catch (const py::cast_error&) {
-        throw py::type_error("size is (width, height) in pixels, not " + std::string(py::repr(value)));
+        throw py::type_error("size is (width, height) in pixels, not " + shown(value));
       }
       made.width = size.first, made.height = size.second;
       if (made.width < 1 || made.height < 1)
         throw UsageError("a picture of " + std::string(py::repr(value)) + " pixels");
     } else if (name == "width") {
-      made.width = value.cast<int>();
+      made.width = option<int>(name, value, "a whole number of pixels");
     } else if (name == "height") {
-      made.height = value.cast<int>();
+      made.height = option<int>(name, value, "a whole number of pixels");
     } else if (name == "fps") {
       made.fps = py::str(value);
     } else if (name == "theme") {
-      made.theme = value.cast<std::string>();
+      made.theme = option<std::string>(name, value, "'paper' or 'screen'");
     } else if (name == "camera") {
-      made.camera = value.cast<std::string>();
+      made.camera = option<std::string>(name, value, "a camera's name");
     } else if (name == "transparent") {
-      made.transparent = value.cast<bool>();
+      made.transparent = option<bool>(name, value, "True or False");
     } else if (name == "start") {
-      made.from = value.cast<double>();
+      made.from = option<double>(name, value, "a number of seconds");
     } else if (name == "end") {
-      made.to = value.cast<double>();
+      made.to = option<double>(name, value, "a number of seconds");
     } else if (name == "crf") {
-      made.crf = value.cast<double>();
+      made.crf = option<double>(name, value, "a number");
     } else if (name == "preset") {
-      made.preset = value.cast<std::string>();
+      made.preset = option<std::string>(name, value, "a word");
     } else if (name == "codec") {
-      made.codec = value.cast<std::string>();
+      made.codec = option<std::string>(name, value, "a word");
     } else if (name == "jobs") {
-      made.jobs = value.cast<int>();
+      made.jobs = option<int>(name, value, "a whole number of threads");
     } else {
       throw py::type_error(
           "no option '" + name +
@@ -281,6 +291,8 @@ void add_film(py::module_& module) {
         Movie& movie = it.open();
         unlocked([&] { movie.close(); });
       });
+
+  refuse_unmade<Picture>(), refuse_unmade<Drawing>(), refuse_unmade<Recording>();
 
   module.def("render", [](const Scene& scene, const std::string& out, const py::kwargs& how) {
     const FilmOptions made = options(how);

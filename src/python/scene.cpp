@@ -15,20 +15,18 @@ namespace py = pybind11;
 
 namespace {
 
-using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
 // Zeros whose memory a capsule owns: NumPy's resize(), which would move what the run reads, refuses such.
-Array zeros(std::vector<py::ssize_t> shape) {
+Numbers zeros(std::vector<py::ssize_t> shape) {
   std::size_t size = 1;
   for (const py::ssize_t each : shape) size *= std::size_t(each);
   auto* const memory = new double[size]();
   const py::capsule owner(memory, [](void* its) { delete[] static_cast<double*>(its); });
-  return Array(std::move(shape), memory, owner);
+  return Numbers(std::move(shape), memory, owner);
 }
 
 // an array of its own: what Python keeps of a stage stays what it was
-Array copied(const Columns& of, std::vector<py::ssize_t> shape) {
-  Array array = zeros(std::move(shape));
+Numbers copied(const Columns& of, std::vector<py::ssize_t> shape) {
+  Numbers array = zeros(std::move(shape));
   std::memcpy(array.mutable_data(), of.first, of.size() * sizeof(double));
   return array;
 }
@@ -36,18 +34,15 @@ Array copied(const Columns& of, std::vector<py::ssize_t> shape) {
 // An instant within a step, as Python's forces see it.
 struct StageView {
   double time = 0;
-  Array positions, velocities, spins, orientations, forces, torques;
+  Numbers positions, velocities, spins, orientations, forces, torques;
 };
 
 // adds the answer of a force, if it returns one, forces or forces and torques, and not what it has filled
-void add(const py::handle answer, Array& to, const char* what) {
-  const Array given = Array::ensure(answer);
-  if (!given)
-    throw py::type_error(std::string("a force returned ") + what +
-                         " that are no array of numbers: " + std::string(py::repr(answer)));
+void add(const py::handle answer, Numbers& to, const char* what, const char* hint = "") {
+  const Numbers given = numbers(answer, std::string("a force returned ") + what);
   if (given.size() != to.size())
     throw py::value_error(std::string("a force returned ") + std::to_string(given.size()) + " numbers of " +
-                          what + ", expected " + std::to_string(to.size()));
+                          what + ", expected " + std::to_string(to.size()) + hint);
   // columns for rows are as many numbers
   if (given.ndim() > 1 && shape(given) != shape(to))
     throw py::value_error(std::string("a force returned ") + what + " of " + shape(given) + ", expected " +
@@ -60,28 +55,34 @@ void add(const py::handle answer, Array& to, const char* what) {
 }
 
 // `stage.forces += f` sets what it has changed in place
-template <Array StageView::*Of>
-void set(StageView& stage, const Array& to) {
-  Array& its = stage.*Of;
+template <Numbers StageView::*Of>
+void set(StageView& stage, const py::object& given) {
+  Numbers& its = stage.*Of;
+  const Numbers to = numbers(given, "what a force fills");
   if (to.data() == its.data()) return;
   if (to.size() != its.size() || (to.ndim() > 1 && shape(to) != shape(its)))
     throw py::value_error("an array of " + shape(to) + ", expected " + shape(its) + ": a row a body");
   std::memcpy(its.mutable_data(), to.data(), std::size_t(its.nbytes()));
 }
 
-// The function of Python behind a force; it may be let go in any thread.
+// The function of Python behind a force. Copies of it are in scenes, worlds and renderers of C++, where
+// Python's collector does not look: a function that refers to its world would never be let go. So this has a
+// weak reference to what holds the function, and the objects of Python keep that (obscura/scene.py). It may
+// be let go in any thread.
 struct Callable {
-  explicit Callable(py::function of)
-      : function(new py::function(std::move(of)), [](py::function* it) {
+  explicit Callable(const py::object& holder)
+      : held(new py::weakref(holder), [](py::weakref* it) {
           if (!Py_IsInitialized()) return;
           const py::gil_scoped_acquire locked;
           delete it;
         }) {}
-  std::shared_ptr<py::function> function;
+  std::shared_ptr<py::weakref> held;
 
   py::object called(const StageView& view) const {
+    const py::object holder = (*held)();
+    if (holder.is_none()) throw UsageError("the function of a force is gone");
     try {
-      return (*function)(view);
+      return holder.attr("function")(view);
     } catch (py::error_already_set& error) {
       // it would end the loop over frames in which the force is called
       if (!error.matches(PyExc_StopIteration)) throw;
@@ -104,10 +105,11 @@ struct Callable {
                    copied(stage.orientations, {n, d, d}),
                    zeros(rows(d)),
                    zeros(rows(spins))};
-    Array forces = view.forces, torques = view.torques;
+    Numbers forces = view.forces, torques = view.torques;
     const py::object answer = called(view);
     if (py::isinstance<py::tuple>(answer) && py::len(answer) == 2) {
-      add(answer[py::int_(0)], forces, "forces"), add(answer[py::int_(1)], torques, "torques");
+      constexpr const char* kHint = ": a tuple of two is forces and torques";
+      add(answer[py::int_(0)], forces, "forces", kHint), add(answer[py::int_(1)], torques, "torques", kHint);
     } else if (!answer.is_none()) {
       add(answer, forces, "forces");
     }
@@ -142,6 +144,7 @@ void add_scene(py::module_& module) {
       .def("__repr__", [](const Body& it) { return "<Body " + it.name + ", a " + it.kind + ">"; });
 
   py::class_<Scene>(module, "Scene")
+      .def(py::init<const Scene&>())
       .def_static(
           "read",
           [](const std::string& file, const std::vector<std::string>& sets) {
@@ -158,10 +161,8 @@ void add_scene(py::module_& module) {
           "build",
           [](const py::handle& keys, const std::string& name) { return Builder(table(keys)).build(name); },
           py::arg("keys"), py::arg("name") = "scene")
-      .def("with_key", [](const Scene& it, const std::string& key,
-                          const py::handle& to) { return it.with(key, value(to)); })
       .def("with_force", [](const Scene& it, const std::string& name,
-                            py::function force) { return it.with_force(name, Callable(std::move(force))); })
+                            const py::object& holder) { return it.with_force(name, Callable(holder)); })
       .def("keys", [](const Scene& it) { return dict(it.keys()); })
       .def_property_readonly("name", &Scene::name)
       .def_property_readonly("file", &Scene::file)
@@ -173,6 +174,8 @@ void add_scene(py::module_& module) {
       .def_property_readonly("forces", &Scene::forces)
       .def_property_readonly("warnings", &Scene::warnings)
       .def_property_readonly("hash", &Scene::hash);
+
+  refuse_unmade<StageView>(), refuse_unmade<Body>(), refuse_unmade<Scene>();
 
   module.def(
       "toml", [](const py::handle& keys) { return Builder(table(keys)).text(); }, "A scene's keys as TOML.");

@@ -14,8 +14,6 @@ namespace py = pybind11;
 
 namespace {
 
-using Given = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
 // rows of the state itself, for reading: the array keeps its world
 py::array shared(const py::object& world, const Columns& of) {
   std::vector<py::ssize_t> shape{py::ssize_t(of.rows)};
@@ -25,7 +23,7 @@ py::array shared(const py::object& world, const Columns& of) {
   return array;
 }
 
-std::span<const double> span(const Given& array) { return {array.data(), std::size_t(array.size())}; }
+std::span<const double> span(const Numbers& array) { return {array.data(), std::size_t(array.size())}; }
 
 py::array_t<double> vector(const double (&x)[3]) { return py::array_t<double>(3, x); }
 
@@ -34,9 +32,10 @@ py::array column(const py::object& world) {
   return shared(world, (world.cast<const World&>().*Get)());
 }
 template <Columns (World::*Get)() const, void (World::*Set)(std::span<const double>)>
-void set_column(const py::object& world, const Given& to) {
+void set_column(const py::object& world, const py::object& given) {
   // columns for rows are as many numbers
   const py::array there = column<Get>(world);
+  const Numbers to = numbers(given, "a column of " + shape(there));
   if (to.ndim() > 1 && to.size() == there.size() && shape(to) != shape(there))
     throw UsageError("an array of " + shape(to) + ", expected " + shape(there) + ": a row a body");
   (world.cast<World&>().*Set)(span(to));
@@ -124,7 +123,9 @@ void add_world(py::module_& module) {
             return state;
           }));
 
-  py::class_<World>(module, "World", py::dynamic_attr())
+  // Its attributes are those of the class in obscura/scene.py: with py::dynamic_attr() Python 3.11 would
+  // count them twice, and never collect a world of a cycle.
+  py::class_<World>(module, "World")
       .def(py::init([](const Scene& scene, int threads) {
              return unlocked([&] { return World(scene, threads); });
            }),
@@ -167,6 +168,9 @@ void add_world(py::module_& module) {
       .def("save", &World::save, "The whole state, as a value.")
       .def("restore", &World::restore, py::arg("state"), "Goes on from a state of this scene.")
       .def_property_readonly("hash", &World::hash, "Of the state: equal for equal runs, to the bit.");
+
+  refuse_unmade<Contact>(), refuse_unmade<Pair>(), refuse_unmade<Event>(), refuse_unmade<Energies>();
+  refuse_unmade<State>(), refuse_unmade<World>();
 }
 
 }  // namespace obscura::python

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
+#include <type_traits>
 
 #include "obscura/obscura.h"
 #include "scene/canonical.h"
@@ -126,6 +128,24 @@ TEST(Builder, AnUnknownKeyIsRefusedWhereItIsGiven) {
   EXPECT_TRUE(builder.keys().empty() || builder.text().empty());
 }
 
+TEST(Builder, AKeyThatIsGivenTwiceIsRefusedByItsName) {
+  // its message named a line of a text that nobody had written
+  for (const auto& twice :
+       std::vector<std::function<void()>>{[] {
+                                            Builder(Table{{"room", Table{{"drag", 1}, {"drag", 2}}}});
+                                          },
+                                          [] {
+                                            Builder().add("room", {{"drag", 1}, {"drag", 2}});
+                                          }})
+    try {
+      twice();
+      FAIL();
+    } catch (const SceneError& error) {
+      EXPECT_EQ(error.faults[0].key, "room.drag");
+      EXPECT_EQ(error.faults[0].message, "'drag' is given twice");
+    }
+}
+
 TEST(Builder, AWrongValueIsAFaultOfItsKey) {
   Builder builder;
   builder.set("room.size", {4, 2.25});
@@ -154,6 +174,20 @@ TEST(Builder, AFaultNamesOtherPlacesByTheirKeys) {
     EXPECT_THAT(error.what(), testing::HasSubstr("room.size"));
     EXPECT_THAT(error.what(), testing::Not(testing::ContainsRegex("two:[0-9]")));
   }
+}
+
+TEST(Builder, APointerIsNoTruth) {
+  static_assert(!std::is_constructible_v<Value, const int*> &&
+                !std::is_constructible_v<Value, const char8_t*>);
+  static_assert(std::is_constructible_v<Value, char*> && std::is_constructible_v<Value, const char(&)[2]>);
+  EXPECT_EQ(Value("a"), Value(std::string("a")));
+}
+
+TEST(Scene, WithTakesAKeyAlone) {
+  const Scene scene = Scene::parse("[room]\nsize = [4, 2.25]\n");
+  EXPECT_EQ(scene.with("title", "x").with("title", "y").hash(), scene.with("title", "y").hash());
+  // it was read as the title 3="x"
+  EXPECT_THROW(scene.with("title=3", "x"), UsageError);
 }
 
 TEST(Builder, TextComesThroughWhateverStandsInIt) {

@@ -363,6 +363,67 @@ TEST(World, RefusesAVelocityWhoseStateItWouldRefuse) {
   EXPECT_EQ(world.velocities()(0, 0), 1e5);
 }
 
+TEST(World, RefusesPlacesOutsideOfTheRoom) {
+  const auto refuses = [](const Scene& scene, const std::vector<double>& x, const char* why) {
+    World world(scene);
+    const std::string before = world.hash();
+    try {
+      world.set_positions(x);
+      FAIL() << why;
+    } catch (const UsageError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(why));
+    }
+    EXPECT_EQ(world.hash(), before);
+  };
+  const Scene plane = Scene::parse(
+      "[room]\nsize = [4, 3]\n[[particle]]\nname = 'p'\nposition = [1, 1]\n"
+      "[[box]]\nname = 'box'\nsize = [1, 0.2]\nposition = [2, 1]\n");
+  refuses(plane, {9, 1, 2, 1}, "p would be outside the room: 5 m beyond the right wall");
+  refuses(plane, {1, 1, -0.3, 1}, "box would be outside the room: 0.3 m beyond the left wall");
+  refuses(plane, {1, 1, 2, 3.5}, "0.5 m beyond the ceiling");
+  refuses(plane, {1, -1e-3, 2, 1}, "0.001 m beyond the floor");
+  World(plane).set_positions(std::array{0.0, 0.0, 3.5, 2.9});
+
+  // upright it fits beside the wall: positions and turns may be set in either order
+  const std::array beside = {1.0, 1.0, 0.1, 1.0};
+  const std::array upright = {1.5707963267948966};
+  World first(plane), second(plane);
+  first.set_positions(beside), first.set_turns(upright);
+  second.set_turns(upright), second.set_positions(beside);
+  first.step(), second.step();
+  EXPECT_EQ(first.hash(), second.hash());
+  // and lying it does not, which the step tells
+  World lying(plane);
+  lying.set_positions(beside);
+  const std::string before = lying.hash();
+  try {
+    lying.step();
+    FAIL();
+  } catch (const RunError& error) {
+    EXPECT_EQ(error.body, "box");
+    EXPECT_THAT(error.what(), HasSubstr("is outside the room: 0.4 m beyond the left wall"));
+  }
+  EXPECT_EQ(lying.hash(), before);
+  EXPECT_THROW(lying.step(), RunError);
+  lying.set_turns(upright);
+  lying.step();
+  EXPECT_EQ(lying.hash(), first.hash());
+
+  const Scene space = Scene::parse(
+      "[room]\nsize = [4, 3, 2]\n[[ball]]\nname = 'ball'\nradius = 0.5\nposition = [0, 1, 0]\n"
+      "[[box]]\nname = 'sill'\nsize = [1, 1, 1]\nposition = [-1.9, 0, 0]\nfixed = true\n");
+  refuses(space, {0, 1, 3, -1.9, 0, 0}, "ball would be outside the room: 2.5 m beyond the front wall");
+  refuses(space, {0, 1, -3, -1.9, 0, 0}, "beyond the back wall");
+  // one that is held counts by its centre
+  refuses(space, {0, 1, 0, -2.5, 0, 0}, "sill would be outside the room: 0.5 m beyond the left wall");
+  World(space).set_positions(std::array{0.0, 1.0, 0.0, -2.0, 0.0, 0.0});
+  // a room of its own walls, and one of none
+  refuses(Scene::parse("[room]\nwalls = [{ point = [0, 0], normal = [1, 1] }]\n[[particle]]\nname = 'p'\n"
+                       "position = [1, 1]\n"),
+          {-1, -1}, "1.41 m beyond wall 0");
+  World(balls(1, 100)).set_positions(std::array{-900.0, 900.0});
+}
+
 TEST(World, StandsWhereTheLastWholeStepLeftItWhenItsRunEnds) {
   const Scene scene = Scene::parse(
       "[room]\nsize = [4, 3]\nwalls = 'none'\n[physics]\nrate = 60\nintegrator = 'euler'\n"

@@ -1,6 +1,8 @@
 """The Python module: scenes, worlds, forces, frames and films. Run by tests/python/check."""
 
 import copy
+import functools
+import gc
 import inspect
 import json
 import os
@@ -9,6 +11,7 @@ import re
 import subprocess
 import sys
 import tomllib
+import weakref
 from pathlib import Path
 
 import numpy as np
@@ -155,6 +158,45 @@ def test_a_list_changed_in_place_changes_the_scene():
         room().ball.elasticity = 0.5
     with pytest.raises(AttributeError, match="did you mean 'velocities'"):
         room().world().velocity = [[1, 0]]
+
+
+def test_what_is_no_longer_in_the_scene_changes_nothing_without_a_word():
+    scene = room()
+    old = scene.ball[0].position
+    scene.ball[0].position = [1, 1]
+    with pytest.raises(obscura.UsageError, match="replaced: ask for it again, as scene.ball.0..position"):
+        old[0] = 3.5
+    assert scene.ball[0].position == [1, 1]
+    gone = scene.ball.add(name="gone", radius=0.1, position=[1, 3])
+    kept = scene.ball.add(name="kept", radius=0.1, position=[3, 3])
+    del scene.ball["gone"]
+    with pytest.raises(obscura.UsageError, match="no longer in the scene"):
+        gone.radius = 0.2
+    kept.radius = 0.2
+    assert scene.ball["kept"].radius == 0.2 and scene.ball[0].radius == 0.1
+    for wrong, told in ((lambda: scene.ball.radius, r"scene\.ball\[0\]\.radius"), (lambda: scene.ball.append({}), "scene.ball.add"),
+                        (lambda: scene.ball[0:1], "by its number or name")):
+        with pytest.raises((AttributeError, TypeError), match=told):
+            wrong()
+    scene.room = 5
+    assert repr(scene.room) == "<room: {}>"
+    with pytest.raises(obscura.SceneError, match="expected a table, got 5"):
+        scene.world()
+
+
+def test_a_class_of_worlds_has_attributes_of_its_own():
+    class Task(obscura.World):
+        def __init__(self, scene):
+            super().__init__(scene)
+            self.goal = 3
+
+    task = Task(room())
+    task.step()
+    assert task.goal == 3 and task.steps == 1
+    with pytest.raises(AttributeError, match="did you mean 'velocities'"):
+        task.velocity = 1
+    with pytest.raises(AttributeError, match="a world has no 'goal'"):
+        room().world().goal = 3
 
 
 def test_copies_and_pickles_keep_what_was_read(tmp_path):
@@ -320,6 +362,36 @@ def test_states_are_saved_restored_and_set():
     with pytest.raises(obscura.UsageError, match="did you mean 'b'"):
         world.body("bb")
     assert world.read("b.velocity.x") == 1 and world.energies.kinetic == 1
+
+
+def test_a_body_is_not_set_outside_the_room():
+    scene = obscura.Scene(room={"size": [4, 4]}, ball=[{"name": "b", "radius": 0.1, "position": [2, 2]}])
+    world = scene.world()
+    for place, wall in (([100, 2], "96.1 m beyond the right wall"), ([2, -5], "the floor"), ([0.05, 2], "the left wall")):
+        with pytest.raises(obscura.UsageError, match=f"b would be outside the room: .*{wall}"):
+            world.positions = [place]
+    assert world.positions.tolist() == [[2, 2]]
+    world.positions = [[0.1, 3.9]]  # in a corner
+    world.step()
+
+
+@pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+def test_what_a_run_has_come_to_can_be_set(path):
+    scene = obscura.Scene(path)
+    there, world = scene.world(), scene.world()
+    try:
+        there.step_to(1)
+    except obscura.RunError:
+        pass
+    for name in ("positions", "turns", "velocities", "spins"):
+        try:
+            setattr(world, name, getattr(there, name))
+        except obscura.UsageError as error:
+            assert "outside" not in str(error)
+    try:
+        world.step()
+    except obscura.RunError as error:
+        assert "outside" not in str(error)
 
 
 def test_contacts_and_events():
@@ -510,6 +582,147 @@ def test_what_a_force_raises_comes_out_and_the_step_is_not_taken():
     with pytest.raises(obscura.RunError) as found:
         scene.world().step()
     assert found.value.body == "b" and found.value.quantity == "force"
+
+
+def test_a_second_force_without_a_name_of_its_own_does_not_replace_the_first():
+    def push(f):
+        def made(stage):
+            return np.full((1, 2), f)
+        return made
+
+    class Field:
+        def pull(self, stage):
+            return 0 * stage.positions
+
+    for first, second in ((lambda stage: [[1, 0]], lambda stage: [[0, 1]]), (push(1), push(2)), (Field().pull, Field().pull),
+                          (functools.partial(spring), functools.partial(spring))):
+        scene = room()
+        scene.add_force(first)
+        scene.add_force(first)
+        with pytest.raises(obscura.UsageError, match="already: add_force.force, name=...."):
+            scene.add_force(second)
+        scene.add_force(second, "second")
+        assert [force for _, force in scene._forces] == [first, second]
+    # a cell of a notebook that runs again
+    for _ in range(2):
+        exec("def again(stage): return 0 * stage.positions", here := {})
+        scene.add_force(here["again"])
+    assert len(scene._forces) == 3
+
+
+def test_a_force_that_refers_to_its_world_is_collected():
+    def made():
+        scene, own = room(), []
+        scene.add_force(lambda stage: len(own) * 0 * stage.positions, "own")
+        scene.add_force(spring)
+        world, renderer = scene.world(), scene.frames(**SMALL)
+        own.extend([scene, world, renderer, scene.copy()])
+        world.step()
+        renderer.draw(world)
+        return [weakref.ref(each) for each in own]
+
+    gc.collect()
+    kept = made()
+    gc.collect()
+    assert [each() for each in kept] == [None] * 4
+
+
+def test_a_force_lives_as_long_as_what_calls_it():
+    calls = []
+    scene = room()
+    scene.add_force(lambda stage: calls.append(1), "counted")
+    world, renderer = scene.world(), scene.frames(**SMALL)
+    del scene
+    gc.collect()
+    before = len(calls)
+    world.step()
+    between = len(calls)
+    next(renderer), next(renderer)
+    assert before < between < len(calls)
+
+
+def test_text_and_complex_numbers_are_no_columns():
+    world = room().world()
+    for wrong in ("abc", None, [[1, 2], [3]], np.array([["1", "2"]]), np.array([[1 + 1j, 2]])):
+        with pytest.raises(TypeError, match="a column of 1 x 2: no array of numbers"):
+            world.velocities = wrong
+        scene = room()
+        scene.add_force(lambda stage: (wrong, 0), "wrong")
+        with pytest.raises(TypeError, match="a force returned forces: no array of numbers"):
+            scene.world().step()
+    scene = room()
+    scene.add_force(lambda stage: (0.0, 1.0), "of one body")
+    with pytest.raises(ValueError, match="returned 1 numbers of forces, expected 2: a tuple of two is forces and torques"):
+        scene.world().step()
+    world.velocities = np.array([[1, 2]], np.float32)[:, ::-1]
+    assert world.velocities.tolist() == [[2, 1]]
+
+
+# --- arguments
+
+
+@pytest.mark.parametrize("name", ["Body", "Contact", "Energies", "Event", "Frame", "Movie", "Pair", "Renderer", "Scene", "Stage",
+                                  "State", "World"])
+def test_what_was_not_made_is_an_error_and_no_crash(name):
+    program = f"""
+import obscura
+for of in (obscura, obscura._obscura):
+    made = of.{name}.__new__(of.{name})
+    for member in {{*dir(type(made))}} - set(dir(object)):
+        try:
+            found = getattr(made, member)
+            for arguments in ((), (made,), (1,), ("a",), (None, None, None)):
+                try:
+                    found(*arguments)
+                except Exception as error:
+                    assert not isinstance(error, SystemError)
+        except Exception as error:
+            assert not isinstance(error, SystemError)
+"""
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+
+
+WRONG = {
+    "world.step(1.5)": "whole number of steps.*not 1.5",
+    "world.step('a')": "whole number of steps.*not 'a'",
+    "world.step(10**30)": "whole number of steps",
+    "world.step(1, 2)": "takes from 1 to 2 positional arguments",
+    "world.step_to('1')": "number of seconds, not '1'",
+    "world.body(0)": "name of a body, not 0",
+    "world.read(0)": "takes a name, as 'energy.total', not 0",
+    "world.restore(b'')": "what save\\(\\) gave",
+    "obscura.World(scene, threads='2')": "threads is a whole number",
+    "obscura.Scene(3)": "file's name, or keys as a dict",
+    "obscura.Scene({3: 4})": "keys of a scene are words, not 3",
+    "obscura.Scene('[room]\\nsize = [4, 4]\\n')": "Scene.parse\\(text\\)",
+    "obscura.Scene.parse(Path('a.toml'))": "reads a file",
+    "obscura.Scene.parse('', sets=[1])": "'sets' is a list of words",
+    "scene.add_force(spring, name=3)": "name of a force is a word",
+    "scene.frames(width=1.5)": "width is a whole number of pixels, not 1.5",
+    "scene.frames(theme=3)": "theme is 'paper' or 'screen', not 3",
+    "scene.frames(start='a')": "start is a number of seconds, not 'a'",
+    "scene.frames(**SMALL).at('1')": "number of seconds, not '1'",
+    "scene.frames(**SMALL).draw(scene)": "takes a World, not <Scene",
+    "scene.still('a', 'b.png')": "number of seconds, not 'a'",
+    "scene.render('a\\0.mp4')": "no zero in it",
+    "scene.render(os.fsdecode(b'\\xff.mp4'))": "path is of UTF-8",
+    "scene.picture('a')": "number of seconds",
+    "obscura.Movie('a.mp4', scene)": "is of a Renderer",
+    "obscura.Movie('a.mp4', size=(16, 16), fps=10, start=1)": "has no start: that is a renderer's",
+    "scene.sweep('b.mass=1', 'energy.total')": "'vary' is a list",
+    "scene.sweep({'b.mass': 1}, 'energy.total')": "b.mass: expected a list of values, not 1",
+    "scene.sweep({'b.mass': [1]}, [3])": "'measure' is a list of words",
+    "scene.sweep({'b.mass': [1]}, 'energy.total', jobs='a')": "jobs is a whole number",
+}
+
+
+@pytest.mark.parametrize("code", WRONG)
+def test_a_wrong_argument_is_told_in_one_line(code):
+    scene = room()
+    with pytest.raises((TypeError, ValueError), match=WRONG[code]) as found:
+        eval(code, globals(), {"scene": scene, "world": scene.world()})
+    assert "\n" not in str(found.value) and "incompatible" not in str(found.value)
 
 
 # --- pictures and films

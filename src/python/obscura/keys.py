@@ -9,6 +9,7 @@ import json
 from typing import Any, Iterator
 
 from . import _obscura
+from .errors import UsageError
 from .language import is_list, properties
 
 
@@ -117,7 +118,16 @@ class Section:
         value = self._data[name] if name in self._data else node.get("default")
         if not isinstance(value, (list, dict)):
             return value
-        told = (Items if isinstance(value, list) else Entries)(value, lambda: setattr(self, name, told))
+        kept = self._data.get(name)
+
+        def changed() -> None:
+            nonlocal kept
+            if self._data.get(name) is not kept:
+                raise UsageError(f"this value of {path} has been replaced: ask for it again, as scene.{path}")
+            setattr(self, name, told)
+            kept = self._data[name]
+
+        told = (Items if isinstance(value, list) else Entries)(value, changed)
         return told
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -145,7 +155,8 @@ class _Late:
         self._owner, self._name = owner, name
 
     def _there(self) -> dict:
-        return self._owner.get(self._name, {})
+        there = self._owner.get(self._name, {})
+        return there if isinstance(there, dict) else {}
 
     def get(self, key, default=None):
         return self._there().get(key, default)
@@ -175,6 +186,14 @@ class Kind:
     def __init__(self, path: str, owner: Any, name: str, keys: dict, touch):
         self.__dict__.update(_path=path, _owner=owner, _name=name, _keys=keys, _touch=touch)
 
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if name in self._keys:
+            raise AttributeError(f"[[{self._path}]] is a list: ask one of them, as scene.{self._path}[0].{name}")
+        hint = f"; scene.{self._path}.add(...) adds one" if name in ("append", "insert", "extend") else ""
+        raise AttributeError(f"[[{self._path}]] is a list that has no '{name}'{hint}")
+
     def __setattr__(self, name: str, value: Any) -> None:
         example = f"scene.{self._path}[0].{name}"
         raise AttributeError(f"[[{self._path}]] is a list: set the key of one of them, as {example} = ...")
@@ -188,6 +207,8 @@ class Kind:
                 if each.get("name") == which:
                     return i
             raise KeyError(f"no [[{self._path}]] is called '{which}'")
+        if not hasattr(which, "__index__"):
+            raise TypeError(f"one of the [[{self._path}]] is taken by its number or name, not by {which!r}")
         try:
             return range(len(self._list()))[which]
         except IndexError:
@@ -210,7 +231,15 @@ class Kind:
 
     def __getitem__(self, which: int | str) -> Section:
         i = self._number(which)
-        return Section(f"{self._path}[{i}]", self._list()[i], self._keys, self._touch)
+        data = self._list()[i]
+
+        def touch() -> None:
+            all_ = self._list()
+            if not (i < len(all_) and all_[i] is data) and not any(each is data for each in all_):
+                raise UsageError(f"this [[{self._path}]] is no longer in the scene")
+            self._touch()
+
+        return Section(f"{self._path}[{i}]", data, self._keys, touch)
 
     def __delitem__(self, which: int | str) -> None:
         del self._list()[self._number(which)]

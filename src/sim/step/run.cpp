@@ -11,6 +11,7 @@
 #include "sim/model/incomplete.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/step/archive.h"
+#include "sim/step/outside.h"
 #include "sim/step/snapshots.h"
 
 namespace obscura::sim {
@@ -80,6 +81,7 @@ class RunOf final : public Run {
 
   std::variant<std::monostate, Trouble, Stopped> go(std::int64_t step) override {
     between_ = false;
+    if (state_.step < step) check_set();
     while (!trouble_ && state_.step < step) {
       if (stop_ && stop_()) return Stopped{};
       if (shown_ || keeps_) last_ = state_;
@@ -112,7 +114,7 @@ class RunOf final : public Run {
     // a copy: columns stay where they are
     state_ = *state;
     stepper_.emplace(model_);
-    trouble_.reset(), divergence_.reset();
+    trouble_.reset(), divergence_.reset(), before_set_.reset();
     between_ = false;
     return true;
   }
@@ -260,6 +262,16 @@ class RunOf final : public Run {
     }
   }
 
+  // what has been set since the last step, when all of it is: trouble where a body is outside the room
+  void check_set() {
+    if (trouble_ || !before_set_) return;
+    const auto found = outside(model_, *before_set_, state_, false);
+    if (!found) return before_set_.reset();
+    trouble_ = {value(now()), model_.bodies[std::size_t(found->body)].name, "position",
+                "is outside the room: " + found->where,
+                "positions and turns were set that do not go together"};
+  }
+
   Snapshot last_finite(const Trouble& trouble) {
     between_ = false;
     divergence_ = Divergence{trouble, true};
@@ -308,6 +320,7 @@ class RunOf final : public Run {
   bool sound_ = true;
   SceneInfo cast_;
   std::optional<Trouble> trouble_;
+  std::optional<State<D>> before_set_;    // what is set since then is not yet stepped
   std::optional<Divergence> divergence_;  // at the last snapshot
   std::function<bool()> stop_;
   bool shown_ = false;    // a run that diverges
@@ -374,6 +387,9 @@ std::string RunOf<D>::set(const NewBodyColumns& columns) {
   std::fill(next.quiet.begin(), next.quiet.end(), 0.0);
   if (!stepper_->fits(next))
     return "a body would be farther, or faster, than a million room heights, or those a second";
+  if (const auto found = outside(model_, state_, next, true))
+    return model_.bodies[std::size_t(found->body)].name + " would be outside the room: " + found->where;
+  if (!before_set_) before_set_ = state_;
   state_ = next;
   stepper_.emplace(model_);
   stepper_->begin_anew(state_, time({state_.step, 0}, model_.rate));
