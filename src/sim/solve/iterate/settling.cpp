@@ -53,6 +53,25 @@ void Settling::begin(std::span<const ContactConstraint<3>> contacts, std::span<c
       bodies[std::size_t(islands[std::size_t(number)].last++)] = i;
   }
   narrowed = false;
+  before_.assign(moving.begin(), moving.end());
+}
+
+void Settling::compare_velocities(std::span<const PointBody<3>> moving, std::span<const double> radii) {
+  constexpr double kAlike = 1e-3;  // of what counts as no correction
+  for (Island& island : islands) {
+    if (!island.open) continue;
+    double most = 0;
+    for (int i = island.first; i < island.last; ++i) {
+      const auto body = std::size_t(bodies[std::size_t(i)]);
+      const PointBody<3>& now = moving[body];
+      PointBody<3>& then = before_[body];
+      const double r = radii[body];
+      const double turns = r * r * (now.w - then.w).squaredNorm();
+      most = std::max(most, ((now.v - then.v).squaredNorm() + turns) / (r * r));
+      then = now;
+    }
+    if (most <= kAlike * kAlike * island.settled * island.settled) island.changed = false;
+  }
 }
 
 bool Settling::close_settled() {

@@ -40,6 +40,10 @@ struct Settling {
   /// all are open. `never`: bodies on joints.
   void begin(std::span<const ContactConstraint<3>> contacts, std::span<const int> which,
              std::span<const PointBody<3>> moving, std::span<const int> never);
+  /// After an iteration there and back: islands whose bodies move as after the last one have not changed,
+  /// whatever single contacts say. Among the corners of a face, for which no velocities may be right,
+  /// impulses wander for thousands of iterations. `radii`: of the bodies, m.
+  void compare_velocities(std::span<const PointBody<3>> moving, std::span<const double> radii);
   /// After an iteration: closes islands that have settled or spent their budget. Whether any is left.
   bool close_settled();
   /// The bodies that the last iteration named are iterated now; of islands that follow, all.
@@ -55,6 +59,7 @@ struct Settling {
 
   Islands sets_;
   std::vector<Pair> pairs_;
+  std::vector<PointBody<3>> before_;
 };
 
 }  // namespace obscura::sim

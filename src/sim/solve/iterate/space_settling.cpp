@@ -73,6 +73,7 @@ void SpaceIterative::settle_contacts(double h) {
       island.settled = island.friction ? kExactly * island.rate : kSettled;
     }
     batches_.iterate(moving_, back, settling_);
+    if (back) settling_.compare_velocities(moving_, bounding_radius_);
     if (!settling_.close_settled()) return;
     if (follows && back) batches_.follow_directions(moving_, settling_);
     settling_.activate_next();
