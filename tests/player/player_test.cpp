@@ -9,7 +9,9 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <regex>
+#include <sstream>
 
 #include "app/program.h"
 #include "media/browser.h"
@@ -417,6 +419,85 @@ TEST_P(Player, PointingAtABodyTellsItsNameAndValues) {
   // half a second of free fall
   EXPECT_THAT(tip, HasSubstr("4.9"));
   EXPECT_THAT(tab_->complaints(url_), IsEmpty());
+}
+
+// The values of a run as `obscura states` writes them, at each frame of the film, by their columns' names.
+std::vector<std::map<std::string, double>> table_of(const std::string& csv) {
+  std::vector<std::map<std::string, double>> rows;
+  std::istringstream lines(csv);
+  std::vector<std::string> names;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::vector<std::string> cells;
+    for (std::string cell; std::getline(words, cell, ',');) cells.push_back(cell);
+    if (names.empty()) {
+      names = cells;
+      continue;
+    }
+    rows.emplace_back();
+    for (std::size_t i = 0; i < std::min(names.size(), cells.size()); ++i)
+      rows.back()[names[i]] = std::atof(cells[i].c_str());
+  }
+  return rows;
+}
+
+// In a large room, beside a fast body, too: what the table tells is the run's own in each of its digits.
+TEST_P(Player, TheTableTellsTheRunsOwnValues) {
+  std::ofstream(path("large.toml")) << R"toml(title = "A shot"
+duration = 2
+[room]
+size  = [120, 60]
+walls = "ground"
+[[ball]]
+name     = "shot"
+radius   = 1
+position = [5, 2]
+velocity = [20, 25]
+[[ball]]
+name       = "slow"
+radius     = 1
+position   = [60, 1]
+velocity   = [0.05, 0]
+elasticity = 0
+[[spring]]
+between     = [[90, 30], "hung"]
+stiffness   = 10
+rest_length = 1
+[[ball]]
+name     = "hung"
+radius   = 1
+mass     = 1
+position = [90, 20]
+)toml";
+  for (const std::string& scene : {path("large.toml"), kScenes + "room.toml --set duration=2"}) {
+    const auto run = table_of(obscura("states " + scene + " --every 1/60 --format csv").out);
+    ASSERT_GT(run.size(), 100u);
+    open(scene);
+    for (int frame = 0; frame < 110; frame += 11) {
+      const Browser::Json rows = player("return player.values.table(" + std::to_string(frame) +
+                                        ", -1).rows.map((row) => [row.body.name, ...row.words]);");
+      for (const Browser::Json& row : rows) {
+        const std::string name = row[0];
+        int column = 0;
+        for (const char* what : {"position.x", "position.y", "velocity.x", "velocity.y"}) {
+          std::string told = row[++column];
+          if (const std::size_t at = told.find("−"); at != told.npos) told.replace(at, 3, "-");
+          const std::size_t point = told.find('.');
+          const double digit = point == told.npos ? 1 : std::pow(10, -double(told.size() - point - 1));
+          const double is = run[std::size_t(frame)].at(name + "." + what);
+          // rounded, of what is known to a twentieth of a digit
+          EXPECT_LE(std::abs(std::stod(told) - is), 0.56 * digit)
+              << name << "." << what << " in frame " << frame << ": " << told << ", is " << is;
+          EXPECT_LE(digit, 0.011) << name << "." << what << ": " << told;
+        }
+      }
+    }
+  }
+  // what goes on as it does is told as it does
+  open(path("large.toml"));
+  EXPECT_TRUE(
+      bool(player("return [...Array(100).keys()].every((frame) => player.values.table(frame, "
+                  "-1).rows[0].words[2] === '20.00');")));
 }
 
 // Given the page alone: when was the crate struck, how fast was it, how does that look from above?
