@@ -500,6 +500,36 @@ position = [90, 20]
                   "-1).rows[0].words[2] === '20.00');")));
 }
 
+// Bodies of several runs have one name: the table says whose each row is, and sorts by runs, too.
+TEST_P(Player, TheTableSaysOfWhichRunARowIs) {
+  open(kScenes + "euler_and_rk4.toml");
+  const std::string columns =
+      "document.getElementById('values').open = true; player.list(); return [...document.querySelectorAll("
+      "'#values tr')].map((row) => row.children[1].textContent);";
+  const Browser::Json all = player(columns);
+  ASSERT_GE(all.size(), 3u);
+  EXPECT_EQ(all[0], "run");
+  const Browser::Json names = player(
+      "return [...new Set(player.film.bodies.filter((body) => !body.fixed).map((body) => body.run))];");
+  EXPECT_EQ(names.size(), 2u);
+  for (std::size_t i = 1; i < all.size(); ++i)
+    EXPECT_THAT(std::vector<std::string>(names), ::testing::Contains(std::string(all[i])));
+  // sorted by speed, by a column that is a number, and by the run
+  player("document.querySelector('#values th:last-child button').click(); return 1;");
+  EXPECT_TRUE(tab_->value(
+      "(() => { const speeds = [...document.querySelectorAll('#values td:last-child')].map((each) => "
+      "Number(each.textContent)); return speeds.every((v, i) => i === 0 || v <= speeds[i - 1]); })()"));
+  player("document.querySelector('#values th:nth-child(2) button').click(); return 1;");
+  EXPECT_EQ(player(columns), all);
+  // pointed at, a body says whose it is
+  player(
+      "player.pointed = { part: 1, index: player.film.bodies.find((b) => b.part === 1).index, x: 0, y: 0 "
+      "}; player.tell(); return 1;");
+  EXPECT_THAT(std::string(tab_->value("document.getElementById('tip').textContent")),
+              HasSubstr(std::string(names[1])));
+  EXPECT_THAT(tab_->complaints(url_), IsEmpty());
+}
+
 // Given the page alone: when was the crate struck, how fast was it, how does that look from above?
 TEST_P(Player, TellsAStrangerWhenTheCrateWasStruckAndHowFastItWas) {
   open(kScenes + "crate.toml");

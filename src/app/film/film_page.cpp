@@ -118,6 +118,7 @@ PageNumbers::PageNumbers(const std::vector<draw::Illustrator>& artists, double d
       if (body.bare) continue;
       Json each{
           {"name", scene::one_line(body.name)}, {"part", run}, {"index", i}, {"kind", kind_of(body.kind)}};
+      if (artists.size() > 1 && ahead.runs) each["run"] = scene::one_line((*ahead.runs)[run].look.name);
       Body its{run, i, -1, dimension_ == 2 && body.turns, body.turns};
       Json place = Json::array(), velocity = Json::array();
       // their bounds: bodies()

@@ -303,7 +303,7 @@ class Player {
         return;
       }
       const name = document.createElement("b");
-      name.textContent = body.name;
+      name.textContent = body.run === undefined ? body.name : `${body.name}, ${body.run}`;
       tip.append(
         name,
         this.values
@@ -331,6 +331,7 @@ class Player {
     const { head, rows } = this.values.table(this.picture.frame, this.by),
       { time, before } = this.values.instant(this.picture.frame);
     $("when").textContent = `at ${this.values.clock(time, 3)}${before ? ", just before" : ""}`;
+    panel.classList.toggle("runs", head[1] === "run");
     const body = panel.querySelector("tbody"),
       it = this.pointed;
     while (body.rows.length > rows.length) body.deleteRow(-1);
@@ -347,7 +348,7 @@ class Player {
     const heads = panel.querySelector("thead");
     if (!heads.firstChild) heads.append(this.heads(head));
     heads.querySelectorAll("th").forEach((/** @type {HTMLElement} */ each, /** @type {number} */ i) => {
-      if (i === this.by) each.setAttribute("aria-sort", i === 0 ? "ascending" : "descending");
+      if (i === this.by) each.setAttribute("aria-sort", i === 0 || head[i] === "run" ? "ascending" : "descending");
       else each.removeAttribute("aria-sort");
     });
   }

@@ -140,7 +140,14 @@ export class Values {
    */
   table(frame, by) {
     const axes = this.space ? ["x", "y", "z"] : ["x", "y"];
-    const head = ["body", ...axes.map((a) => `${a} / m`), ...axes.map((a) => `v${a} / (m/s)`), "speed / (m/s)"];
+    const several = this.film.bodies.some((/** @type {any} */ body) => body.run !== undefined);
+    const head = [
+      "body",
+      ...(several ? ["run"] : []),
+      ...axes.map((a) => `${a} / m`),
+      ...axes.map((a) => `v${a} / (m/s)`),
+      "speed / (m/s)",
+    ];
     const rows = this.film.bodies
       .filter((/** @type {any} */ body) => !body.fixed)
       .map((/** @type {any} */ body) => {
@@ -148,7 +155,8 @@ export class Values {
         const [length, speed] = body.within,
           values = [...now.place, ...now.velocity, now.speed];
         const words = values.map((x, i) => fixed(x, i < now.place.length ? length : speed));
-        return { body, values, words };
+        // of a column that is no number the place in the scene, the first of which comes first
+        return several ? { body, values: [-body.part, ...values], words: [body.run ?? "", ...words] } : { body, values, words };
       });
     if (by === 0)
       rows.sort((/** @type {any} */ p, /** @type {any} */ q) => p.body.name.localeCompare(q.body.name, undefined, { numeric: true }));
