@@ -712,6 +712,37 @@ TEST_F(Memory, IsSteadyOverTenMinutes) {
   }
 }
 
+class ScrollBars : public Program {};
+
+// Where bars take room, the picture is as wide as they leave: nothing of it is beside the page.
+TEST_F(ScrollBars, LeaveThePictureWhole) {
+  const auto browser = media::browser();
+  OBSCURA_NEEDS(browser, "chromium-headless-shell");
+  ASSERT_EQ(obscura("render " + kScenes + "swing.toml -o page.html --to 1 --progress none").exit, 0);
+  // of each height the page fits in, and does not, with all that can be opened
+  for (const int height : {800, 1000, 640}) {
+    Tab tab(*browser, folder_.string(), 1280, height, Tab::kScrollBars);
+    tab.open("file://" + path("page.html"));
+    tab.value("obscura.then(() => 1)");
+    for (const char* opened : {"false", "true"}) {
+      tab.value("document.querySelectorAll('details').forEach((each) => (each.open = " + std::string(opened) +
+                "))");
+      const Browser::Json seen = tab.value(
+          "(() => { const page = document.documentElement, box = "
+          "document.getElementById('picture').getBoundingClientRect(); return [page.scrollWidth, "
+          "page.clientWidth, box.left, box.right]; })()");
+      EXPECT_LT(double(seen[1]), 1280) << "there is a bar";
+      EXPECT_EQ(seen[0], seen[1]) << height << ", opened " << opened;
+      EXPECT_GE(double(seen[2]), 0);
+      EXPECT_LE(double(seen[3]), double(seen[1]));
+    }
+  }
+  // an embedded one has none
+  Tab tab(*browser, folder_.string(), 960, 580, Tab::kScrollBars);
+  tab.open("file://" + path("page.html#embed"));
+  EXPECT_EQ(tab.value("obscura.then(() => document.documentElement.clientWidth)"), 960);
+}
+
 class WithoutWebGl : public Program {};
 
 TEST_F(WithoutWebGl, SpaceIsSketched) {

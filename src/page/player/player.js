@@ -705,6 +705,8 @@ async function open() {
   return player;
 }
 
-if (window.parent !== window || /[?#&]embed\b/.test(location.href)) document.body.classList.add("embedded");
+// the page's scroll bar is there from the start: the picture is as wide as it leaves
+if (window.parent !== window || /[?#&]embed\b/.test(location.href))
+  for (const each of [document.documentElement, document.body]) each.classList.add("embedded");
 // a page around this one, and tests, may turn it: obscura.then((player) => player.seek(1.5))
 /** @type {any} */ (window).obscura = open();
