@@ -530,6 +530,34 @@ TEST_P(Player, TheTableSaysOfWhichRunARowIs) {
   EXPECT_THAT(tab_->complaints(url_), IsEmpty());
 }
 
+// A page of a part of the film tells of that part: events are those it shows, where it shows them.
+TEST_P(Player, TellsOfThePartThatItShows) {
+  const std::string events =
+      "return player.film.events.map((each) => [each.time, player.frame_of(each), each.text]);";
+  open(kScenes + "room.toml");
+  const Browser::Json whole = player(events);
+  EXPECT_GT(double(whole.back()[0]), 9);
+  open(kScenes + "room.toml", "--from 1 --to 3");
+  const Browser::Json shown = player(events);
+  ASSERT_GT(shown.size(), 5u);
+  std::size_t count = 0;
+  for (const Browser::Json& each : whole)
+    if (const double time = each[0]; time >= 1 && time < 3) {
+      ASSERT_LT(count, shown.size());
+      EXPECT_EQ(shown[count][2], each[2]);
+      EXPECT_NEAR(double(shown[count][1]), std::min(double(each[1]) - 60, 119.0), 1e-9) << each;
+      ++count;
+    }
+  EXPECT_EQ(shown.size(), count);
+  // no instant that is told is later than its end
+  const std::string story = tab_->value("document.getElementById('story').textContent");
+  EXPECT_THAT(story, HasSubstr("At the end, at 3 s"));
+  EXPECT_THAT(story, HasSubstr("from 1 s to 3 s; it lasts 10 s"));
+  const std::regex instant("at ([0-9.]+) s\\b");
+  for (std::sregex_iterator at(story.begin(), story.end(), instant), end; at != end; ++at)
+    EXPECT_LE(std::stod((*at)[1]), 3) << at->str();
+}
+
 // Given the page alone: when was the crate struck, how fast was it, how does that look from above?
 TEST_P(Player, TellsAStrangerWhenTheCrateWasStruckAndHowFastItWas) {
   open(kScenes + "crate.toml");

@@ -1,8 +1,10 @@
 #include "app/film/film_page.h"
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -18,6 +20,7 @@
 #include "app/run/description.h"
 #include "app/run/origin.h"
 #include "app/run/simulation.h"
+#include "app/run/telling.h"
 #include "app/run/trouble.h"
 #include "draw/picture/prose.h"
 #include "gl/renderer.h"
@@ -42,6 +45,7 @@ constexpr double kSlow = 0.01;                  // of the room a second: so fast
 constexpr double kSlowSpin = 0.1;               // rad/s, alike
 constexpr double kAngleDigit = 0.1;             // degrees
 constexpr double kTimeBound = 2e-6;             // s
+constexpr double kNoFrame = 1e-6;               // of a frame
 constexpr double kDegrees = 57.29577951308232;  // a radian
 constexpr double kStill = 720;                  // pt: the width of the first picture,
 constexpr int kStillPixels = 720;               // and of its surfaces
@@ -199,13 +203,46 @@ Json PageNumbers::bodies() {
   return bodies_;
 }
 
-Json events_of(const scene::Scene& scene, const std::vector<Happening>& events) {
+// Where the shots show a frame of the whole film, counted in shots from the first; none where they do not.
+std::optional<double> place_in(const Shots& shots, double frame) {
+  std::int64_t low = 0, high = shots.size();  // the last shot that is not after it
+  while (high - low > 1) {
+    const std::int64_t middle = (low + high) / 2;
+    (double(shots[middle].frame) <= frame + kNoFrame ? low : high) = middle;
+  }
+  const double off = frame - double(shots[low].frame);
+  if (off < -kNoFrame || off > 1 + kNoFrame) return {};
+  return double(low) + std::max(off, 0.0);
+}
+
+// those that the shots show
+Json events_of(const scene::Scene& scene, const Shots& shots, const std::vector<Happening>& events) {
   Json all = Json::array();
+  const double fps = sim::value(shots.fps());
   for (const Happening& each : events) {
     const double film =
         sim::value(scene.film.speed.film(sim::rational(std::llround(each.time * 1e6), 1'000'000)));
-    all.push_back({{"time", each.time}, {"film", film}, {"text", each.text}});
+    if (const auto place = place_in(shots, film * fps))
+      all.push_back({{"time", each.time}, {"film", *place / fps}, {"text", each.text}});
   }
+  return all;
+}
+
+// What happens in the run as far as the shots show it.
+Story story_of(const scene::Scene& scene, const Shots& shots) {
+  const std::int64_t first = shots[0].frame, last = shots[shots.size() - 1].frame;
+  scene::Scene told = scene;
+  const Shots film = Shots::film(scene.duration, scene.film.fps, scene.film.speed);
+  if (last < film.last_frame())
+    told.duration =
+        std::min(scene.duration, scene.film.speed.world(sim::rational(last + 1) / scene.film.fps));
+  Story all = story(told);
+  const double duration = sim::value(scene.duration);
+  if (first > 0 || told.duration < scene.duration)
+    all.sentences.push_back(fmt::format("This page shows the run from {} to {}; it lasts {}.",
+                                        telling::time(sim::value(shots[0].time), duration),
+                                        telling::time(sim::value(told.duration), duration),
+                                        telling::time(duration, duration)));
   return all;
 }
 
@@ -305,8 +342,8 @@ std::string PageFilm::html(bool watched, const std::vector<std::uint8_t>& still)
   out.still = still;
   out.generator = "obscura " OBSCURA_VERSION;
   out.origin = m.origin.tags(draw::in_letters(scene.look.title)).at("obscura");
-  // what happens is told of a whole run
-  if (whole && !m.story) m.story = app::story(scene);
+  // what happens is told when all shots are there
+  if (whole && !m.story) m.story = story_of(scene, m.shots);
   if (m.story) out.sentences = m.story->sentences;
   out.footer = fmt::format("Made by obscura {} from {}; obscura verify makes it again.", OBSCURA_VERSION,
                            m.origin.scene_file);
@@ -325,7 +362,7 @@ std::string PageFilm::html(bool watched, const std::vector<std::uint8_t>& still)
   film["bodies"] = m.numbers.bodies();
   film["charts"] = m.numbers.charts();
   for (const SpacePage& space : m.spaces) film["spaces"].push_back(space.json());
-  film["events"] = events_of(scene, m.story ? m.story->events : std::vector<Happening>());
+  film["events"] = events_of(scene, m.shots, m.story ? m.story->events : std::vector<Happening>());
   film["captions"] = Json::array();
   for (const media::TextCue& cue : subtitles(scene, m.shots, frames()).captions)
     film["captions"].push_back({{"from", cue.begin}, {"to", cue.end}, {"text", cue.text}});

@@ -592,7 +592,7 @@ Story story(const scene::Scene& scene) {
   };
   if (scene.trajectory) {
     for (const double t : scene.trajectory->times)
-      if (const auto exact = sim::from_double(t); exact && !read(*exact)) break;
+      if (const auto exact = sim::from_double(t); exact && (scene.duration < *exact || !read(*exact))) break;
   } else {
     const std::int64_t steps = sim::floor(scene.duration * run->rate()), stride = steps / kMostSteps + 1;
     sim::Rational last{0, 1};
