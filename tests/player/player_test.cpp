@@ -771,6 +771,43 @@ TEST_F(ScrollBars, LeaveThePictureWhole) {
   EXPECT_EQ(tab.value("obscura.then(() => document.documentElement.clientWidth)"), 960);
 }
 
+class Printed : public Program {};
+
+// On paper there are the whole picture, what happens and all events, and nothing to press.
+TEST_F(Printed, PageHasThePictureWholeAndItsEvents) {
+  const auto browser = media::browser();
+  OBSCURA_NEEDS(browser, "chromium-headless-shell");
+  ASSERT_EQ(
+      obscura("render " + kScenes + "room.toml -o page.html --to 3 --theme screen --progress none").exit, 0);
+  Tab tab(*browser, folder_.string(), 1280, 800);
+  tab.open("file://" + path("page.html"));
+  tab.value("obscura.then(() => 1)");
+  // the width of a page of A4 less its margins: the player does not lay itself out for it
+  tab.call("Emulation.setEmulatedMedia", {{"media", "print"}});
+  tab.value(
+      "(() => { window.dispatchEvent(new Event('beforeprint')); document.body.style.width = '700px'; })()");
+  const Browser::Json box = tab.value(
+      "(() => { const box = document.getElementById('picture').getBoundingClientRect(); return [box.left, "
+      "box.right, box.width / box.height]; })()");
+  EXPECT_GE(double(box[0]), 0);
+  EXPECT_LE(double(box[1]), 700);
+  EXPECT_NEAR(double(box[2]), 16.0 / 9, 0.01);
+  const auto height = [&](const std::string& of) {
+    return double(tab.value("document.querySelector('" + of + "').getBoundingClientRect().height"));
+  };
+  EXPECT_EQ(height("#controls"), 0);
+  EXPECT_GT(height("#story ul"), 50);
+  // every one of them, not those in a box that is scrolled
+  const int events = tab.value("document.querySelectorAll('#events li').length");
+  EXPECT_GT(height("#events ol"), 15 * events);
+  EXPECT_EQ(tab.value("getComputedStyle(document.body).color"), "rgb(31, 35, 40)") << "dark on paper";
+  // and on the screen they are as they were
+  tab.value("window.dispatchEvent(new Event('afterprint'))");
+  tab.call("Emulation.setEmulatedMedia", {{"media", "screen"}});
+  EXPECT_EQ(tab.value("document.querySelectorAll('details[open]').length"), 0);
+  EXPECT_GT(height("#controls"), 20);
+}
+
 class WithoutWebGl : public Program {};
 
 TEST_F(WithoutWebGl, SpaceIsSketched) {

@@ -451,6 +451,17 @@ class Player {
     window.addEventListener("resize", () => this.layout());
     document.addEventListener("fullscreenchange", () => this.layout());
     document.body.classList.toggle("space", film.dimension === 3);
+    // printed, what happens and the events are there, open or not
+    /** @type {any[]} */
+    let closed = [];
+    window.addEventListener("beforeprint", () => {
+      closed = ["story", "events"].map($).filter((each) => !each.open);
+      for (const each of closed) each.open = true;
+    });
+    window.addEventListener("afterprint", () => {
+      for (const each of closed) each.open = false;
+      closed = [];
+    });
     this.list_events();
     this.wire_pointers();
     $("controls").hidden = false;
