@@ -8,6 +8,7 @@ import { NOTHING, Values } from "./values.js";
 
 const $ = (/** @type {string} */ id) => /** @type {any} */ (document.getElementById(id));
 const CLOSING = "closing: how fast the points that touch come together, along the normal of the contact";
+const APART = 3; // px: from a tick to the next at least
 const TICK = 4, // px: a click so near an event's tick is meant for it,
   TAP = 8; // and a finger that goes no farther taps
 const TOLD = 200; // ms between two tables while the film plays
@@ -258,7 +259,14 @@ class Player {
     c.fillStyle = style.getPropertyValue("--line");
     c.fillRect(x(0), height / 2 - 2, x(this.last) - x(0), 4);
     c.fillStyle = style.getPropertyValue("--quiet");
-    for (const event of this.film.events) c.fillRect(x(this.frame_of(event)) - 0.75, height / 2 + 5, 1.5, 5);
+    // those that would run into each other are a comb, not a bar
+    let free = -Infinity;
+    for (const event of this.film.events) {
+      const at = x(this.frame_of(event));
+      if (at < free) continue;
+      c.fillRect(at - 0.75, height / 2 + 5, 1.5, 5);
+      free = at + APART;
+    }
   }
 
   /** Where a frame is on the track, px of its width. */
@@ -580,6 +588,8 @@ class Player {
     else
       $("film")
         .requestFullscreen?.()
+        // a phone lays a wide picture along its longer side, where it may
+        .then(() => /** @type {any} */ (screen.orientation).lock?.(this.film.aspect > 1 ? "landscape" : "portrait"))
         .catch(() => undefined);
   }
 
