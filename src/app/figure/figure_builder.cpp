@@ -145,7 +145,8 @@ FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::str
   int wanted = 0;
   for (std::int64_t run = 0; run < variants.size; ++run) {
     const std::string said = variants.formula(run);
-    scene::Scene scene = with_run_marks(read(variants.sets(run, sets)));
+    scene::Scene scene = with_run_marks(options.vary.empty() ? read(variants.sets(run, sets))
+                                                             : varied_by_flag(variants, run, sets, read));
     if (options.theme) scene.look.theme = *options.theme;
     const draw::Figure& figure = scene.figure;
     std::vector<sim::Rational> times = options.at.empty() ? figure.at : options.at;
