@@ -558,6 +558,16 @@ TEST_P(Player, TellsOfThePartThatItShows) {
     EXPECT_LE(std::stod((*at)[1]), 3) << at->str();
 }
 
+// An impact has one time, in the sentences and in the list.
+TEST_P(Player, ListsAnImpactWhenItIsDescribed) {
+  const std::string described = obscura("describe " + kScenes + "room.toml").out;
+  std::smatch first;
+  ASSERT_TRUE(std::regex_search(described, first, std::regex("the first at ([0-9.]+) s"))) << described;
+  open(kScenes + "room.toml");
+  EXPECT_THAT(std::string(player("return document.querySelector('#events li').textContent;")),
+              ::testing::StartsWith(first[1].str() + " s"));
+}
+
 // Given the page alone: when was the crate struck, how fast was it, how does that look from above?
 TEST_P(Player, TellsAStrangerWhenTheCrateWasStruckAndHowFastItWas) {
   open(kScenes + "crate.toml");

@@ -221,7 +221,7 @@ Json events_of(const scene::Scene& scene, const Shots& shots, const std::vector<
   const double fps = sim::value(shots.fps());
   for (const Happening& each : events) {
     const double film =
-        sim::value(scene.film.speed.film(sim::rational(std::llround(each.time * 1e6), 1'000'000)));
+        sim::value(scene.film.speed.film(sim::rational(std::llround(each.seen * 1e6), 1'000'000)));
     if (const auto place = place_in(shots, film * fps))
       all.push_back({{"time", each.time}, {"film", *place / fps}, {"text", each.text}});
   }
