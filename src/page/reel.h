@@ -33,6 +33,8 @@ class Reel {
 
   /// A number of the run, to be put once a frame; its keys are within `bound`.
   int number(double bound);
+  /// Another bound for it: keys are written when all frames are there.
+  void bound(int number, double bound) { numbers_[std::size_t(number)].bound = bound; }
   void put(int number, double value) { numbers_[std::size_t(number)].course.add(value); }
 
   /// The structure as JSON, and the streams that it names the lengths of.

@@ -262,7 +262,7 @@ std::vector<bool> fixed_copies(const Fields& fields, int count, bool copied, Dia
         copied
             ? fmt::format("'fixed': expected which of the {} copies, such as \"0..{}\" or \"0,{}\", got {}",
                           count, count - 1, count - 1, in_quotes(fixed.text()))
-            : "'fixed': expected true or false; a list of copies needs copies");
+            : "'fixed': expected true or false, without quotes; a list of copies needs copies");
   } else {
     for (const int i : *which) held[std::size_t(i)] = true;
   }
@@ -296,7 +296,7 @@ void add_changed(BuilderContext<D>& making, const Fields& fields, const BodyKind
       complaints.add(set->place, fmt::format("'{0}' is one for all copies; set {1}.{0}", whole, group.name));
   if (const Node* own_fixed = own_fields.given("fixed")) {
     if (own_fixed->is_text())
-      complaints.add(own_fixed->place, "'fixed': expected true or false for one copy");
+      complaints.add(own_fixed->place, "'fixed': expected true or false for one copy, without quotes");
     else
       start.fixed = std::get<bool>(own_fixed->value);
   }

@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::size_t kMostBytes = std::size_t(16) << 20;
 constexpr const char* kCalculated = "a value is a number, not a calculation: 0.5, not 1/2";
+constexpr std::size_t kLongestEscape = 24;  // bytes of a word of mathematics, of a unit
 constexpr int kDeepest =
     64;  // nested lists and tables, and parts of a dotted key: the parser recurses over both
 
@@ -189,9 +190,42 @@ std::string mistyped_number(std::string_view before, std::string_view at) {
   return {};
 }
 
+// an escape of mathematics in double quotes, where the parser stopped in it: "\\alpha"
+std::string escape(std::string_view line, int column, std::string_view description) {
+  if (description.find("escape") == description.npos && description.find("unicode") == description.npos)
+    return {};
+  const std::string_view at = from_column(line, column);
+  const std::size_t from = line.substr(0, std::min(line.size() - at.size() + 1, line.size())).rfind('\\');
+  if (from == line.npos) return {};
+  std::size_t end = from + 1;
+  while (end < line.size() && std::isalpha(static_cast<unsigned char>(line[end])) != 0) ++end;
+  const std::string_view word = line.substr(from + 1, end - from - 1);
+  if (word.empty() || word.size() > kLongestEscape) return {};
+  return fmt::format(
+      "in double quotes a \\ is written twice: write '\\\\{0}' for '\\{0}', or put the text in single quotes",
+      word);
+}
+
+// a unit behind a number, blanks between them or not, where the parser stopped at it; or one in words that
+// mean true and false elsewhere
+std::string unit_behind(std::string_view before, std::string_view at) {
+  const auto letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  const auto digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  std::size_t end = 0;
+  while (end < at.size() &&
+         (letter(at[end]) || at[end] == '/' || static_cast<unsigned char>(at[end]) >= 0x80))
+    ++end;
+  std::string_view number = before.substr(0, before.find_last_not_of(" \t") + 1);
+  if (end == 0 || number.empty() || !digit(number.back())) return {};
+  number.remove_prefix(number.find_last_not_of("0123456789._+-") + 1);
+  if (number.empty() || end > kLongestEscape) return {};
+  return fmt::format("a number has no unit, all are in m, kg, s and degrees; got {}{}",
+                     before.substr(std::size_t(number.data() - before.data())), at.substr(0, end));
+}
+
 // guesses what was forgotten at the place where the parser stopped: a quote, a bracket, or the quotes around
 // a word; empty if none of these
-std::string forgotten(std::string_view text, int line, int column) {
+std::string forgotten(std::string_view text, int line, int column, std::string_view description) {
   std::vector<std::string_view> lines;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
@@ -229,10 +263,11 @@ std::string forgotten(std::string_view text, int line, int column) {
   const std::size_t first = here.find_first_not_of(" \t"), equals = here.find('=');
   if (first == std::string_view::npos) return {};
   const std::string_view at = from_column(here, column);
+  if (const std::string sign = escape(here, column, description); !sign.empty()) return sign;
   if (const std::string sign = look_alike(at); !sign.empty()) return sign;
-  if (const std::string number = mistyped_number(here.substr(0, here.size() - at.size()), at);
-      !number.empty())
-    return number;
+  const std::string_view before = here.substr(0, here.size() - at.size());
+  if (const std::string number = mistyped_number(before, at); !number.empty()) return number;
+  if (const std::string unit = unit_behind(before, at); !unit.empty()) return unit;
   if (column >= 1 && column <= int(here.size()) && here[column - 1] == '.')
     return "a number has a digit before its point: 0.1";
   const auto digit_at = [&](int i) {
@@ -257,6 +292,10 @@ std::string forgotten(std::string_view text, int line, int column) {
   if (value == std::string_view::npos || here[value] == '#') return "a value is missing after the =";
   if (std::isalpha(static_cast<unsigned char>(here[value]))) {
     std::string_view word = here.substr(value, here.find_first_of(" \t#", value) - value);
+    std::string small(word);
+    for (char& c : small) c = char(std::tolower(static_cast<unsigned char>(c)));
+    if (word != small && (small == "true" || small == "false"))
+      return fmt::format("it is written {}, not {}", small, word);
     if (word != "true" && word != "false") return fmt::format("words go in quotes: \"{}\"", word);
   }
   return {};
@@ -383,7 +422,7 @@ Node document(std::string_view text, const std::string& file) {
     const Place place = place_of(error.source());
     if (const std::string twice = repeated(text, place.line, error.description()); !twice.empty())
       refuse(file, place.line, place.column, twice);
-    const std::string likely = forgotten(text, place.line, place.column);
+    const std::string likely = forgotten(text, place.line, place.column, error.description());
     refuse(file, place.line, place.column,
            "not TOML: " + one_line(likely.empty() ? lowered(error.description()) : likely));
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
@@ -125,6 +126,39 @@ TEST_F(Compared, PanelsHaveOneScaleOneClockAndALineEach) {
     EXPECT_TRUE(std::any_of(panels.begin(), panels.end(), [&](const draw::Rect& panel) {
       return clip.x >= panel.x - 1e-9 && clip.x + clip.width <= panel.x + panel.width + 1e-9;
     }));
+  }
+}
+
+// The names over the panels are as dark as words are, whatever their runs' colours: 4.5 to the page at least.
+TEST_F(Compared, NamesOverPanelsAreRead) {
+  for (const char* theme : {"paper", "screen"}) {
+    const scene::Scene scene = scene::parse(std::string(kSpring) + "[look]\ntheme = \"" + theme +
+                                                "\"\n[film]\nvary = \"physics.rate=30:100:10\"\n",
+                                            "a.toml", {});
+    const Ahead ahead = app::ahead(scene);
+    const std::vector<draw::Illustrator> artists = depictors(scene, ahead);
+    std::vector<draw::Rect> panels;
+    std::vector<draw::ComparedRun> names;
+    std::deque<sim::Snapshot> snapshots;
+    std::vector<draw::Comparison::Instant> nows;
+    for (const Ahead::Run& run : *ahead.runs) {
+      auto own = run.scene.run();
+      const sim::Snapshot& now = snapshots.emplace_back(moment(*own, sim::rational(0), scene));
+      nows.push_back({now, now, {}});
+      panels.push_back(run.panel), names.push_back(run.look);
+    }
+    const double aspect = 16.0 / 9;
+    const draw::Comparison page(names, artists, panels, scene.look, aspect, ahead.charts,
+                                draw::laid_out(scene.film.titles, aspect));
+    const draw::Picture picture = page.depict(nows, 0, 0, 1);
+    for (const draw::ComparedRun& run : names) {
+      EXPECT_EQ(count(*picture.still, run.name), 1) << run.name;
+      for (const draw::Text& text : picture.still->texts) {
+        if (words_of(text) != run.name) continue;
+        for (const draw::Span& span : text.spans)
+          EXPECT_GE(draw::contrast(span.color, picture.ground), 4.5) << theme << ": " << run.name;
+      }
+    }
   }
 }
 

@@ -119,7 +119,7 @@ TEST_F(Sweep, ARunInTroubleHasItInItsRowAndTheOthersGoOn) {
   const Outcome refused = obscura(asked + "ball.mass=1,-1,2 --set 'spring[0].stiffness=20'");
   EXPECT_EQ(refused.exit, 3);
   EXPECT_EQ(cells(refused.out).size(), 4u);
-  EXPECT_NE(refused.out.find("--set ball.mass=-1: 'mass' must be"), std::string::npos) << refused.out;
+  EXPECT_NE(refused.out.find("--vary ball.mass=-1: 'mass' must be"), std::string::npos) << refused.out;
 }
 
 TEST_F(Sweep, AnInterruptKeepsItsRowsAndResumeGoesOnToTheSameBytes) {

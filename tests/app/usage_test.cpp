@@ -34,6 +34,22 @@ TEST_F(Usage, AnUnknownOptionIsToldWithTheOneThatWasMeant) {
   refuses("--verson", "there is no option --verson; did you mean '--version'?");
 }
 
+TEST_F(Usage, WhatIsNoCommandIsToldWhatIs) {
+  refuses("help", "see obscura --help");
+  refuses("scene.toml", "'scene.toml' is a scene, not a command: obscura render scene.toml");
+  refuses("zzzzz", "the commands are ");
+  refuses("zzzzz", "; see obscura --help");
+}
+
+TEST_F(Usage, WhatVariesIsNamedAsItWasTyped) {
+  const std::string asked = "sweep scene.toml --measure energy.total@end --vary ";
+  refuses(asked + "mass=1,2", "--vary mass=1: ", 3);
+  refuses(asked + "ball.mass=1..5", "--vary ball.mass=1..5: a range is from:to or from:to:stride, as in 1:5");
+  refuses("figure scene.toml -o a.svg --vary ball.mas=1,2", "--vary ball.mas=1: ", 3);
+  EXPECT_EQ(shell("timeout 60 " OBSCURA_BINARY " " + asked + "mass=1,2").err.find("--set"),
+            std::string::npos);
+}
+
 TEST_F(Usage, AnEndingThatNothingMakesIsUsage) {
   for (const char* name : {"a.jpg", "a.avi", "a"}) {
     refuses(std::string("render scene.toml -o ") + name, std::string(name) + ": ");

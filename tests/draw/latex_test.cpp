@@ -23,6 +23,8 @@ TEST(Latex, SaysWhatTheFormulaSays) {
            std::pair("\\text{at rest}", "$\\obscuratext{at rest}$"),
            std::pair("\\theta = 30\\deg", "$\\theta =30^{\\circ}$"),
            std::pair("30^\\circ", "$30^{\\circ}$"),
+           std::pair("\\theta / \"deg\"", "$\\theta \\ /\\ \\obscuratext{deg}$"),
+           std::pair("x / \"m\"", "$x\\ /\\ \\obscuratext{m}$"),
            std::pair("θ ≤ π", "$\\theta \\le \\pi$"),
            std::pair("\\sin \\omega t", "$\\sin \\omega t$"),
            std::pair("e = 0.8", "$e=0.8$"),

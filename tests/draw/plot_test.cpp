@@ -450,6 +450,69 @@ TEST(Plot, DashesStayWhereTheyAreWhileALineGrows) {
               half.nodes[std::size_t(half.strokes[k].end) - 1].at);
 }
 
+// A plot of orbits of these radii, each of so many rounds.
+Plot orbits(const std::vector<double>& radii, double rounds) {
+  Plot plot;
+  plot.title = "v";
+  for (const double radius : radii) {
+    Series line;
+    line.label = radius == radii.front() ? "a" : "b";
+    for (int k = 0; k <= 97 * rounds; ++k) {
+      const double angle = 2 * std::numbers::pi * k / 97.3;
+      line.along.push_back(radius * std::cos(angle)), line.values.push_back(radius * std::sin(angle));
+    }
+    plot.times.resize(line.values.size());
+    plot.lines.push_back(std::move(line));
+  }
+  tell_apart(plot);
+  return plot;
+}
+
+double drawn(const List& list) {
+  double all = 0;
+  for (const Stroke& stroke : list.strokes)
+    for (int i = stroke.begin; i + 1 < stroke.end; ++i)
+      all += (list.nodes[std::size_t(i) + 1].at - list.nodes[std::size_t(i)].at).norm();
+  return all;
+}
+
+/// Where an orbit runs over itself its dashes stay: a second round would fill their gaps.
+TEST(Plot, AnOrbitIsDashedOnce) {
+  Plot once = orbits({1}, 1), often = orbits({1}, 3.4);
+  List first, all;
+  for (Plot* each : {&once, &often}) each->lines[0].style = 1;
+  const PlotArea area = plot_area(once, kRect, 2);
+  draw_lines(once, area, first), draw_lines(often, area, all);
+  EXPECT_NEAR(drawn(all), drawn(first), 0.03 * drawn(first));
+  // one that comes back elsewhere is drawn on, and one without dashes is as it was
+  Plot damped = orbits({1}, 3);
+  damped.lines[0].style = 1;
+  for (std::size_t k = 0; k < damped.lines[0].values.size(); ++k)
+    for (std::vector<double>* of : {&damped.lines[0].values, &damped.lines[0].along})
+      (*of)[k] *= std::exp(-0.004 * double(k));
+  List spiral;
+  draw_lines(damped, area, spiral);
+  EXPECT_GT(drawn(spiral), 1.5 * drawn(first));
+}
+
+/// Of lines that end inside their plot, nothing at the right says which is which: their names are a key.
+TEST(Plot, NamesOfOrbitsWithinEachOtherAreAKey) {
+  const auto names = [](const std::vector<double>& radii) {
+    List list;
+    draw_plots({orbits(radii, 1)}, palette(Theme::paper), {kRect}, 1, list);
+    std::vector<Point> places;
+    for (const char* name : {"a", "b"})
+      for (const Text& text : list.texts)
+        if (said(text) == name) places.push_back(text.at);
+    return places;
+  };
+  const auto key = names({1, 0.4});
+  ASSERT_EQ(key.size(), 2u);
+  EXPECT_EQ(key[0].y(), key[1].y()) << "in one row";
+  EXPECT_LT(key[0].x(), key[1].x()) << "in their order";
+  EXPECT_LT(key[1].x(), 500) << "beside the title";
+}
+
 TEST(Plot, NamesAreSpreadInTheirOrderAndWithinTheirEnds) {
   const std::vector<double> wanted{50, 52, 51, 10, 98};
   const std::vector<double> heights(5, 10);

@@ -9,7 +9,9 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <regex>
+#include <sstream>
 
 #include "app/program.h"
 #include "media/browser.h"
@@ -419,6 +421,153 @@ TEST_P(Player, PointingAtABodyTellsItsNameAndValues) {
   EXPECT_THAT(tab_->complaints(url_), IsEmpty());
 }
 
+// The values of a run as `obscura states` writes them, at each frame of the film, by their columns' names.
+std::vector<std::map<std::string, double>> table_of(const std::string& csv) {
+  std::vector<std::map<std::string, double>> rows;
+  std::istringstream lines(csv);
+  std::vector<std::string> names;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::vector<std::string> cells;
+    for (std::string cell; std::getline(words, cell, ',');) cells.push_back(cell);
+    if (names.empty()) {
+      names = cells;
+      continue;
+    }
+    rows.emplace_back();
+    for (std::size_t i = 0; i < std::min(names.size(), cells.size()); ++i)
+      rows.back()[names[i]] = std::atof(cells[i].c_str());
+  }
+  return rows;
+}
+
+// In a large room, beside a fast body, too: what the table tells is the run's own in each of its digits.
+TEST_P(Player, TheTableTellsTheRunsOwnValues) {
+  std::ofstream(path("large.toml")) << R"toml(title = "A shot"
+duration = 2
+[room]
+size  = [120, 60]
+walls = "ground"
+[[ball]]
+name     = "shot"
+radius   = 1
+position = [5, 2]
+velocity = [20, 25]
+[[ball]]
+name       = "slow"
+radius     = 1
+position   = [60, 1]
+velocity   = [0.05, 0]
+elasticity = 0
+[[spring]]
+between     = [[90, 30], "hung"]
+stiffness   = 10
+rest_length = 1
+[[ball]]
+name     = "hung"
+radius   = 1
+mass     = 1
+position = [90, 20]
+)toml";
+  for (const std::string& scene : {path("large.toml"), kScenes + "room.toml --set duration=2"}) {
+    const auto run = table_of(obscura("states " + scene + " --every 1/60 --format csv").out);
+    ASSERT_GT(run.size(), 100u);
+    open(scene);
+    for (int frame = 0; frame < 110; frame += 11) {
+      const Browser::Json rows = player("return player.values.table(" + std::to_string(frame) +
+                                        ", -1).rows.map((row) => [row.body.name, ...row.words]);");
+      for (const Browser::Json& row : rows) {
+        const std::string name = row[0];
+        int column = 0;
+        for (const char* what : {"position.x", "position.y", "velocity.x", "velocity.y"}) {
+          std::string told = row[++column];
+          if (const std::size_t at = told.find("−"); at != told.npos) told.replace(at, 3, "-");
+          const std::size_t point = told.find('.');
+          const double digit = point == told.npos ? 1 : std::pow(10, -double(told.size() - point - 1));
+          const double is = run[std::size_t(frame)].at(name + "." + what);
+          // rounded, of what is known to a twentieth of a digit
+          EXPECT_LE(std::abs(std::stod(told) - is), 0.56 * digit)
+              << name << "." << what << " in frame " << frame << ": " << told << ", is " << is;
+          EXPECT_LE(digit, 0.011) << name << "." << what << ": " << told;
+        }
+      }
+    }
+  }
+  // what goes on as it does is told as it does
+  open(path("large.toml"));
+  EXPECT_TRUE(
+      bool(player("return [...Array(100).keys()].every((frame) => player.values.table(frame, "
+                  "-1).rows[0].words[2] === '20.00');")));
+}
+
+// Bodies of several runs have one name: the table says whose each row is, and sorts by runs, too.
+TEST_P(Player, TheTableSaysOfWhichRunARowIs) {
+  open(kScenes + "euler_and_rk4.toml");
+  const std::string columns =
+      "document.getElementById('values').open = true; player.list(); return [...document.querySelectorAll("
+      "'#values tr')].map((row) => row.children[1].textContent);";
+  const Browser::Json all = player(columns);
+  ASSERT_GE(all.size(), 3u);
+  EXPECT_EQ(all[0], "run");
+  const Browser::Json names = player(
+      "return [...new Set(player.film.bodies.filter((body) => !body.fixed).map((body) => body.run))];");
+  EXPECT_EQ(names.size(), 2u);
+  for (std::size_t i = 1; i < all.size(); ++i)
+    EXPECT_THAT(std::vector<std::string>(names), ::testing::Contains(std::string(all[i])));
+  // sorted by speed, by a column that is a number, and by the run
+  player("document.querySelector('#values th:last-child button').click(); return 1;");
+  EXPECT_TRUE(tab_->value(
+      "(() => { const speeds = [...document.querySelectorAll('#values td:last-child')].map((each) => "
+      "Number(each.textContent)); return speeds.every((v, i) => i === 0 || v <= speeds[i - 1]); })()"));
+  player("document.querySelector('#values th:nth-child(2) button').click(); return 1;");
+  EXPECT_EQ(player(columns), all);
+  // pointed at, a body says whose it is
+  player(
+      "player.pointed = { part: 1, index: player.film.bodies.find((b) => b.part === 1).index, x: 0, y: 0 "
+      "}; player.tell(); return 1;");
+  EXPECT_THAT(std::string(tab_->value("document.getElementById('tip').textContent")),
+              HasSubstr(std::string(names[1])));
+  EXPECT_THAT(tab_->complaints(url_), IsEmpty());
+}
+
+// A page of a part of the film tells of that part: events are those it shows, where it shows them.
+TEST_P(Player, TellsOfThePartThatItShows) {
+  const std::string events =
+      "return player.film.events.map((each) => [each.time, player.frame_of(each), each.text]);";
+  open(kScenes + "room.toml");
+  const Browser::Json whole = player(events);
+  EXPECT_GT(double(whole.back()[0]), 9);
+  open(kScenes + "room.toml", "--from 1 --to 3");
+  const Browser::Json shown = player(events);
+  ASSERT_GT(shown.size(), 5u);
+  std::size_t count = 0;
+  for (const Browser::Json& each : whole)
+    if (const double time = each[0]; time >= 1 && time < 3) {
+      ASSERT_LT(count, shown.size());
+      EXPECT_EQ(shown[count][2], each[2]);
+      EXPECT_NEAR(double(shown[count][1]), std::min(double(each[1]) - 60, 119.0), 1e-9) << each;
+      ++count;
+    }
+  EXPECT_EQ(shown.size(), count);
+  // no instant that is told is later than its end
+  const std::string story = tab_->value("document.getElementById('story').textContent");
+  EXPECT_THAT(story, HasSubstr("At the end, at 3 s"));
+  EXPECT_THAT(story, HasSubstr("from 1 s to 3 s; it lasts 10 s"));
+  const std::regex instant("at ([0-9.]+) s\\b");
+  for (std::sregex_iterator at(story.begin(), story.end(), instant), end; at != end; ++at)
+    EXPECT_LE(std::stod((*at)[1]), 3) << at->str();
+}
+
+// An impact has one time, in the sentences and in the list.
+TEST_P(Player, ListsAnImpactWhenItIsDescribed) {
+  const std::string described = obscura("describe " + kScenes + "room.toml").out;
+  std::smatch first;
+  ASSERT_TRUE(std::regex_search(described, first, std::regex("the first at ([0-9.]+) s"))) << described;
+  open(kScenes + "room.toml");
+  EXPECT_THAT(std::string(player("return document.querySelector('#events li').textContent;")),
+              ::testing::StartsWith(first[1].str() + " s"));
+}
+
 // Given the page alone: when was the crate struck, how fast was it, how does that look from above?
 TEST_P(Player, TellsAStrangerWhenTheCrateWasStruckAndHowFastItWas) {
   open(kScenes + "crate.toml");
@@ -599,6 +748,74 @@ TEST_F(Memory, IsSteadyOverTenMinutes) {
     EXPECT_LT(last, first + 256 * 1024) << scene << ": bytes, from " << first;
     std::cout << scene << ": " << first << " bytes after half a minute, " << last << " after ten\n";
   }
+}
+
+class ScrollBars : public Program {};
+
+// Where bars take room, the picture is as wide as they leave: nothing of it is beside the page.
+TEST_F(ScrollBars, LeaveThePictureWhole) {
+  const auto browser = media::browser();
+  OBSCURA_NEEDS(browser, "chromium-headless-shell");
+  ASSERT_EQ(obscura("render " + kScenes + "swing.toml -o page.html --to 1 --progress none").exit, 0);
+  // of each height the page fits in, and does not, with all that can be opened
+  for (const int height : {800, 1000, 640}) {
+    Tab tab(*browser, folder_.string(), 1280, height, Tab::kScrollBars);
+    tab.open("file://" + path("page.html"));
+    tab.value("obscura.then(() => 1)");
+    for (const char* opened : {"false", "true"}) {
+      tab.value("document.querySelectorAll('details').forEach((each) => (each.open = " + std::string(opened) +
+                "))");
+      const Browser::Json seen = tab.value(
+          "(() => { const page = document.documentElement, box = "
+          "document.getElementById('picture').getBoundingClientRect(); return [page.scrollWidth, "
+          "page.clientWidth, box.left, box.right]; })()");
+      EXPECT_LT(double(seen[1]), 1280) << "there is a bar";
+      EXPECT_EQ(seen[0], seen[1]) << height << ", opened " << opened;
+      EXPECT_GE(double(seen[2]), 0);
+      EXPECT_LE(double(seen[3]), double(seen[1]));
+    }
+  }
+  // an embedded one has none
+  Tab tab(*browser, folder_.string(), 960, 580, Tab::kScrollBars);
+  tab.open("file://" + path("page.html#embed"));
+  EXPECT_EQ(tab.value("obscura.then(() => document.documentElement.clientWidth)"), 960);
+}
+
+class Printed : public Program {};
+
+// On paper there are the whole picture, what happens and all events, and nothing to press.
+TEST_F(Printed, PageHasThePictureWholeAndItsEvents) {
+  const auto browser = media::browser();
+  OBSCURA_NEEDS(browser, "chromium-headless-shell");
+  ASSERT_EQ(
+      obscura("render " + kScenes + "room.toml -o page.html --to 3 --theme screen --progress none").exit, 0);
+  Tab tab(*browser, folder_.string(), 1280, 800);
+  tab.open("file://" + path("page.html"));
+  tab.value("obscura.then(() => 1)");
+  // the width of a page of A4 less its margins: the player does not lay itself out for it
+  tab.call("Emulation.setEmulatedMedia", {{"media", "print"}});
+  tab.value(
+      "(() => { window.dispatchEvent(new Event('beforeprint')); document.body.style.width = '700px'; })()");
+  const Browser::Json box = tab.value(
+      "(() => { const box = document.getElementById('picture').getBoundingClientRect(); return [box.left, "
+      "box.right, box.width / box.height]; })()");
+  EXPECT_GE(double(box[0]), 0);
+  EXPECT_LE(double(box[1]), 700);
+  EXPECT_NEAR(double(box[2]), 16.0 / 9, 0.01);
+  const auto height = [&](const std::string& of) {
+    return double(tab.value("document.querySelector('" + of + "').getBoundingClientRect().height"));
+  };
+  EXPECT_EQ(height("#controls"), 0);
+  EXPECT_GT(height("#story ul"), 50);
+  // every one of them, not those in a box that is scrolled
+  const int events = tab.value("document.querySelectorAll('#events li').length");
+  EXPECT_GT(height("#events ol"), 15 * events);
+  EXPECT_EQ(tab.value("getComputedStyle(document.body).color"), "rgb(31, 35, 40)") << "dark on paper";
+  // and on the screen they are as they were
+  tab.value("window.dispatchEvent(new Event('afterprint'))");
+  tab.call("Emulation.setEmulatedMedia", {{"media", "screen"}});
+  EXPECT_EQ(tab.value("document.querySelectorAll('details[open]').length"), 0);
+  EXPECT_GT(height("#controls"), 20);
 }
 
 class WithoutWebGl : public Program {};

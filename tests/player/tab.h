@@ -14,7 +14,8 @@ namespace obscura {
 /// A page in a headless Chromium, driven through its DevTools protocol over two pipes.
 class Tab : public Browser {
  public:
-  /// `flag`: one more of the browser.
+  /// `flag`: one more of the browser; kScrollBars: without the one that hides them.
+  static constexpr const char* kScrollBars = "--hide-scrollbars";
   Tab(const std::string& program, const std::string& folder, int width, int height,
       const std::string& flag = {}) {
     int to[2], from[2];
@@ -33,7 +34,10 @@ class Tab : public Browser {
                                       "--disable-extensions",
                                       "--disable-sync",
                                       "about:blank"};
-    if (!flag.empty()) words.insert(words.end() - 1, flag);
+    if (flag == kScrollBars)
+      std::erase(words, flag);
+    else if (!flag.empty())
+      words.insert(words.end() - 1, flag);
     child_ = std::make_unique<Child>(words, [&] {
       ::setenv("HOME", folder.c_str(), 1);
       // it reads commands from 3 and writes answers to 4

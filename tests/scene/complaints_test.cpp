@@ -604,7 +604,7 @@ TEST(Diagnostics, CopiesAreCountedAndBounded) {
   refused("[[particle]]\nfixed = \"0..3\"\ncopies = { count = 3 }",
           "a.toml:2:9: 'fixed': expected which of the 3 copies, such as \"0..2\" or \"0,2\", got '0..3'");
   refused("[[particle]]\nfixed = \"0\"",
-          "a.toml:2:9: 'fixed': expected true or false; a list of copies needs copies");
+          "a.toml:2:9: 'fixed': expected true or false, without quotes; a list of copies needs copies");
 }
 
 TEST(Diagnostics, OneThingIsSaidOnce) {

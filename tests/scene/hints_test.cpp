@@ -95,6 +95,35 @@ TEST(Hints, SignsOfSlidesAreNamed) {
               ElementsAre("a.toml:2:12: not TOML: a list is in square brackets: [1, 2]"));
 }
 
+TEST(Hints, CommandsOfMathematicsAreWrittenWithTwoBackslashes) {
+  for (const char* word : {"alpha", "lambda", "Delta", "omega", "uparrow", "xi", "Uparrow"}) {
+    const std::string wrong = std::string("[[ball]]\nlabel = \"a \\") + word + " b\"\n";
+    EXPECT_THAT(hints_of(wrong), ElementsAre(EndsWith(std::string("write '\\\\") + word + "' for '\\" + word +
+                                                      "', or put the text in single quotes")))
+        << word;
+  }
+}
+
+TEST(Hints, TrueAndFalseAreSmallAndWithoutQuotes) {
+  EXPECT_THAT(hints_of("[[ball]]\nfixed = True\n"), ElementsAre(EndsWith("it is written true, not True")));
+  EXPECT_THAT(hints_of("[[ball]]\nfixed = FALSE\n"), ElementsAre(EndsWith("it is written false, not FALSE")));
+  EXPECT_THAT(hints_of("[[ball]]\nfixed = \"True\"\n"), ElementsAre(HasSubstr("without quotes")));
+}
+
+TEST(Hints, NumbersAreWithoutUnits) {
+  const auto number = [](const std::string& line) { return hints_of("[[ball]]\n" + line + "\n"); };
+  for (const char* line : {"mass = 2kg", "mass = 2 kg", "radius = 20 cm", "velocity = [1 m/s, 2]",
+                           "mass = 2.5kg", "radius = 1e-2m"})
+    EXPECT_THAT(number(line), ElementsAre(HasSubstr("a number has no unit, all are in m, kg, s and degrees")))
+        << line;
+  EXPECT_THAT(number("radius = 20 cm"), ElementsAre(EndsWith("; got 20 cm")));
+}
+
+TEST(Hints, AnAngleHasAVertex) {
+  EXPECT_THAT(hints_of(kHintedBall + "[[figure.angle]]\nbetween = [\"a\", [2, 3]]\n"),
+              testing::Contains(EndsWith("an angle is 'at' its vertex, from 'from' to 'to'")));
+}
+
 TEST(Hints, NumbersAreNoCalculations) {
   const auto number = [](const std::string& line) { return hints_of("[[ball]]\n" + line + "\n"); };
   for (const char* line : {"mass = 1/3", "position = [1, 2*3]", "mass = 2+1"})

@@ -50,10 +50,17 @@ void know_command(const CLI::App& program, int argc, const char* const* argv) {
     if (command->get_name() == argv[1]) return;
     names.push_back(command->get_name());
   }
+  const std::string word = argv[1];
+  if (word == "help")
+    throw UsageError("there is no command 'help'; see obscura --help, or obscura render --help");
+  if (word.ends_with(".toml"))
+    throw UsageError(
+        fmt::format("'{0}' is a scene, not a command: obscura render {0}", scene::one_line(word)));
   const std::string meant = scene::did_you_mean(argv[1], {names.begin(), names.end()});
-  throw UsageError(
-      fmt::format("there is no command '{}'{}", argv[1],
-                  meant.empty() ? fmt::format("; the commands are {}", fmt::join(names, ", ")) : meant));
+  throw UsageError(fmt::format(
+      "there is no command '{}'{}", argv[1],
+      meant.empty() ? fmt::format("; the commands are {}; see obscura --help", fmt::join(names, ", "))
+                    : meant));
 }
 
 // of an option that there is not: its name, and the one that was probably meant; else CLI11's words

@@ -145,7 +145,8 @@ FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::str
   int wanted = 0;
   for (std::int64_t run = 0; run < variants.size; ++run) {
     const std::string said = variants.formula(run);
-    scene::Scene scene = with_run_marks(read(variants.sets(run, sets)));
+    scene::Scene scene = with_run_marks(options.vary.empty() ? read(variants.sets(run, sets))
+                                                             : varied_by_flag(variants, run, sets, read));
     if (options.theme) scene.look.theme = *options.theme;
     const draw::Figure& figure = scene.figure;
     std::vector<sim::Rational> times = options.at.empty() ? figure.at : options.at;
@@ -176,10 +177,11 @@ FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::str
     take(scene, times, said);
     const std::vector<std::string>& titles = figure.titles;
     const bool entitled = !figure.room && std::size_t(run) < titles.size();
-    variants_.push_back({scene, entitled ? titles[std::size_t(run)]
-                                : variants.keys.empty()
-                                    ? ""
-                                    : '"' + Variation::spoken(variants[run].back()) + '"'});
+    variants_.push_back({scene,
+                         entitled                ? titles[std::size_t(run)]
+                         : variants.keys.empty() ? ""
+                                                 : '"' + Variation::spoken(variants[run].back()) + '"',
+                         entitled ? titles[std::size_t(run)] : said});
   }
   const int n = int(panels_.size()) *
                 (panels_.front().cast.dimension == 3 ? int(panels_.front().scene.cameras.size()) : 1);
@@ -409,12 +411,15 @@ std::vector<draw::Plot> FigureBuilder::plots() const {
   if (variants_.size() == 1) return all;
   const draw::Color ink = draw::palette(variants_.front().scene.look.theme).ink;
   for (draw::Plot& plot : all) plot.lines.clear();
+  const draw::Figure& figure = panels_.front().scene.figure;
   for (std::size_t v = 0; v < variants_.size(); ++v) {
     const std::vector<draw::Plot> own = app::plots(variants_[v].scene, marks);
     for (std::size_t i = 0; i < all.size(); ++i) {
       for (draw::Series line : own[i].lines) {
         const std::string what = own[i].lines.size() > 1 ? line.label + " " : "";
-        line.label = what + variants_[v].name;
+        // a key has room for more than a value, which no panel says either
+        const bool alone = !figure.room && !figure.plots[i].against.empty();
+        line.label = what + (alone ? variants_[v].words : variants_[v].name);
         const auto told = draw::color(kTold[all[i].lines.size() % kTold.size()]);
         line.color = told ? draw::mix(*told, ink, 0.2) : ink;
         line.weight = 1;

@@ -97,6 +97,7 @@ class FigureBuilder {
   struct Variant {
     scene::Scene scene;
     std::string name;
+    std::string words;  // with what it is the value of
   };
   std::vector<draw::Plot> plots() const;
 

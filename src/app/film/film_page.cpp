@@ -1,8 +1,10 @@
 #include "app/film/film_page.h"
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -18,6 +20,7 @@
 #include "app/run/description.h"
 #include "app/run/origin.h"
 #include "app/run/simulation.h"
+#include "app/run/telling.h"
 #include "app/run/trouble.h"
 #include "draw/picture/prose.h"
 #include "gl/renderer.h"
@@ -34,14 +37,25 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kPlaceBound = 2e-4, kSpeedBound = 1e-3;  // of a body's numbers: m, or of the room's; m/s
-constexpr double kAngleBound = 1e-3, kTimeBound = 2e-6;   // rad, s
-constexpr double kDegrees = 57.29577951308232;            // a radian
-constexpr double kStill = 720;                            // pt: the width of the first picture,
-constexpr int kStillPixels = 720;                         // and of its surfaces
-constexpr double kPlotBound = 1e-3;                       // of an axis
+// a number is told to a digit of this part of the largest, or less, and is known to this part of that digit;
+// of very many bodies to one less
+constexpr double kLastDigit = 1 / 2000.0, kKnown = 1 / 20.0;
+constexpr std::size_t kVeryMany = 200;
+constexpr double kSlow = 0.01;                  // of the room a second: so fast is counted as the largest
+constexpr double kSlowSpin = 0.1;               // rad/s, alike
+constexpr double kAngleDigit = 0.1;             // degrees
+constexpr double kTimeBound = 2e-6;             // s
+constexpr double kNoFrame = 1e-6;               // of a frame
+constexpr double kDegrees = 57.29577951308232;  // a radian
+constexpr double kStill = 720;                  // pt: the width of the first picture,
+constexpr int kStillPixels = 720;               // and of its surfaces
 
 std::string css(draw::Color c) { return fmt::format("rgb({},{},{})", c.r, c.g, c.b); }
+
+// the last digit that is told of so many numbers up to the largest: a power of ten
+double last_digit(double largest, std::size_t count = 1) {
+  return std::pow(10, std::floor(std::log10(kLastDigit * largest)) + (count > kVeryMany ? 1 : 0));
+}
 
 const char* kind_of(sim::ShapeKind kind) {
   switch (kind) {
@@ -64,7 +78,8 @@ class PageNumbers {
   PageNumbers(const std::vector<draw::Illustrator>& artists, double duration, const Ahead& ahead,
               page::Reel& reel);
   void add(const FilmSegment& take, std::size_t frame);
-  Json bodies() const { return bodies_; }
+  /// The bodies, whose numbers are written as exactly as they are told: by the largest of the frames so far.
+  Json bodies();
   Json charts() const { return charts_; }
   int time() const { return time_; }
 
@@ -72,7 +87,8 @@ class PageNumbers {
   struct Body {
     std::size_t run, index;
     int first;  // of its numbers
-    bool angle;
+    bool angle, turns;
+    double speed = 0, spin = 0;  // the largest
   };
   struct Line {
     std::size_t run;
@@ -84,6 +100,8 @@ class PageNumbers {
   page::Reel& reel_;
   int dimension_;
   int time_;
+  double duration_;
+  std::vector<double> farthest_;  // of each run, m
   std::vector<Body> tracked_;
   std::vector<Line> lines_;
   Json bodies_ = Json::array(), charts_ = Json::array();
@@ -91,26 +109,29 @@ class PageNumbers {
 
 PageNumbers::PageNumbers(const std::vector<draw::Illustrator>& artists, double duration, const Ahead& ahead,
                          page::Reel& reel)
-    : artists_(artists), reel_(reel), dimension_(artists.front().scene_info().dimension) {
+    : artists_(artists),
+      reel_(reel),
+      dimension_(artists.front().scene_info().dimension),
+      duration_(duration),
+      farthest_(artists.size(), 0) {
   time_ = reel.number(kTimeBound * std::min(1.0, duration));
   for (std::size_t run = 0; run < artists.size(); ++run) {
     const sim::SceneInfo& cast = artists[run].scene_info();
-    const double length = kPlaceBound * cast.scale,
-                 speed = kSpeedBound * cast.scale * std::max(1.0, 1 / duration);
     for (std::size_t i = 0; i < cast.bodies.size(); ++i) {
       const sim::SceneInfo::Body& body = cast.bodies[i];
       if (body.bare) continue;
       Json each{
           {"name", scene::one_line(body.name)}, {"part", run}, {"index", i}, {"kind", kind_of(body.kind)}};
-      Body its{run, i, -1, dimension_ == 2 && body.turns};
+      if (artists.size() > 1 && ahead.runs) each["run"] = scene::one_line((*ahead.runs)[run].look.name);
+      Body its{run, i, -1, dimension_ == 2 && body.turns, body.turns};
       Json place = Json::array(), velocity = Json::array();
-      for (int k = 0; k < dimension_; ++k) place.push_back(reel.number(length));
-      for (int k = 0; k < dimension_; ++k) velocity.push_back(reel.number(speed));
+      // their bounds: bodies()
+      for (int k = 0; k < dimension_; ++k) place.push_back(reel.number(0));
+      for (int k = 0; k < dimension_; ++k) velocity.push_back(reel.number(0));
       its.first = place[0];
       each["place"] = place, each["velocity"] = velocity;
-      each["within"] = {length, speed, kAngleBound * kDegrees, kSpeedBound};
-      if (its.angle) each["angle"] = reel.number(kAngleBound);
-      if (body.turns) each["spin"] = reel.number(kSpeedBound);
+      if (its.angle) each["angle"] = reel.number(kKnown * kAngleDigit / kDegrees);
+      if (its.turns) each["spin"] = reel.number(0);
       if (body.fixed)
         each["fixed"] = true;
       else
@@ -134,14 +155,14 @@ PageNumbers::PageNumbers(const std::vector<draw::Illustrator>& artists, double d
       std::string name(line.measure->name);
       if (line.body >= 0) name += " of " + scene::one_line(cast.bodies[std::size_t(line.body)].name);
       if (artists.size() > 1 && ahead.runs) name = (*ahead.runs)[run].look.name + ": " + name;
-      const double bound = kPlotBound * (area.high - area.low);
-      const int number = reel.number(bound);
+      const double digit = last_digit(area.high - area.low);
+      const int number = reel.number(kKnown * digit);
       lines_.push_back({run, line, number});
       lines.push_back({{"name", name},
                        {"unit", line.measure->unit ? line.measure->unit : ""},
                        {"color", css(shown.plot.lines[i].color)},
                        {"number", number},
-                       {"within", bound}});
+                       {"within", digit}});
     }
     each["lines"] = lines;
     charts_.push_back(std::move(each));
@@ -150,26 +171,78 @@ PageNumbers::PageNumbers(const std::vector<draw::Illustrator>& artists, double d
 
 void PageNumbers::add(const FilmSegment& take, std::size_t frame) {
   reel_.put(time_, sim::value(take.shots[frame].time));
-  for (const Body& each : tracked_) {
+  for (Body& each : tracked_) {
     const sim::Snapshot::Body& now = take.run(each.run).moments[frame].bodies[each.index];
+    farthest_[each.run] = std::max(farthest_[each.run], now.position.cwiseAbs().maxCoeff());
+    each.speed = std::max(each.speed, now.velocity.norm()), each.spin = std::max(each.spin, now.spin.norm());
     int number = each.first;
     for (int k = 0; k < dimension_; ++k) reel_.put(number++, now.position[k]);
     for (int k = 0; k < dimension_; ++k) reel_.put(number++, now.velocity[k]);
     if (each.angle) reel_.put(number++, now.angle);
-    if (artists_[each.run].scene_info().bodies[each.index].turns)
-      reel_.put(number, dimension_ == 2 ? now.spin.z() : now.spin.norm());
+    if (each.turns) reel_.put(number, dimension_ == 2 ? now.spin.z() : now.spin.norm());
   }
   for (const Line& each : lines_)
     reel_.put(each.number, each.line.at(artists_[each.run].scene_info(), take.run(each.run).moments[frame]));
 }
 
-Json events_of(const scene::Scene& scene, const std::vector<Happening>& events) {
+Json PageNumbers::bodies() {
+  for (std::size_t i = 0; i < tracked_.size(); ++i) {
+    const Body& each = tracked_[i];
+    const double scale = artists_[each.run].scene_info().scale;
+    const double slow = kSlow * scale * std::max(1.0, 1 / duration_);
+    const std::size_t count = tracked_.size();
+    const double place = last_digit(std::max(farthest_[each.run], kSlow * scale), count),
+                 speed = last_digit(std::max(each.speed, slow), count),
+                 spin = last_digit(std::max(each.spin, kSlowSpin), count);
+    for (int k = 0; k < dimension_; ++k) reel_.bound(each.first + k, kKnown * place);
+    for (int k = 0; k < dimension_; ++k) reel_.bound(each.first + dimension_ + k, kKnown * speed);
+    Json& its = bodies_[i];
+    its["within"] = {place, speed, kAngleDigit, spin};
+    if (each.turns) reel_.bound(its["spin"], kKnown * spin);
+  }
+  return bodies_;
+}
+
+// Where the shots show a frame of the whole film, counted in shots from the first; none where they do not.
+std::optional<double> place_in(const Shots& shots, double frame) {
+  std::int64_t low = 0, high = shots.size();  // the last shot that is not after it
+  while (high - low > 1) {
+    const std::int64_t middle = (low + high) / 2;
+    (double(shots[middle].frame) <= frame + kNoFrame ? low : high) = middle;
+  }
+  const double off = frame - double(shots[low].frame);
+  if (off < -kNoFrame || off > 1 + kNoFrame) return {};
+  return double(low) + std::max(off, 0.0);
+}
+
+// those that the shots show
+Json events_of(const scene::Scene& scene, const Shots& shots, const std::vector<Happening>& events) {
   Json all = Json::array();
+  const double fps = sim::value(shots.fps());
   for (const Happening& each : events) {
     const double film =
-        sim::value(scene.film.speed.film(sim::rational(std::llround(each.time * 1e6), 1'000'000)));
-    all.push_back({{"time", each.time}, {"film", film}, {"text", each.text}});
+        sim::value(scene.film.speed.film(sim::rational(std::llround(each.seen * 1e6), 1'000'000)));
+    if (const auto place = place_in(shots, film * fps))
+      all.push_back({{"time", each.time}, {"film", *place / fps}, {"text", each.text}});
   }
+  return all;
+}
+
+// What happens in the run as far as the shots show it.
+Story story_of(const scene::Scene& scene, const Shots& shots) {
+  const std::int64_t first = shots[0].frame, last = shots[shots.size() - 1].frame;
+  scene::Scene told = scene;
+  const Shots film = Shots::film(scene.duration, scene.film.fps, scene.film.speed);
+  if (last < film.last_frame())
+    told.duration =
+        std::min(scene.duration, scene.film.speed.world(sim::rational(last + 1) / scene.film.fps));
+  Story all = story(told);
+  const double duration = sim::value(scene.duration);
+  if (first > 0 || told.duration < scene.duration)
+    all.sentences.push_back(fmt::format("This page shows the run from {} to {}; it lasts {}.",
+                                        telling::time(sim::value(shots[0].time), duration),
+                                        telling::time(sim::value(told.duration), duration),
+                                        telling::time(duration, duration)));
   return all;
 }
 
@@ -269,8 +342,8 @@ std::string PageFilm::html(bool watched, const std::vector<std::uint8_t>& still)
   out.still = still;
   out.generator = "obscura " OBSCURA_VERSION;
   out.origin = m.origin.tags(draw::in_letters(scene.look.title)).at("obscura");
-  // what happens is told of a whole run
-  if (whole && !m.story) m.story = app::story(scene);
+  // what happens is told when all shots are there
+  if (whole && !m.story) m.story = story_of(scene, m.shots);
   if (m.story) out.sentences = m.story->sentences;
   out.footer = fmt::format("Made by obscura {} from {}; obscura verify makes it again.", OBSCURA_VERSION,
                            m.origin.scene_file);
@@ -289,7 +362,7 @@ std::string PageFilm::html(bool watched, const std::vector<std::uint8_t>& still)
   film["bodies"] = m.numbers.bodies();
   film["charts"] = m.numbers.charts();
   for (const SpacePage& space : m.spaces) film["spaces"].push_back(space.json());
-  film["events"] = events_of(scene, m.story ? m.story->events : std::vector<Happening>());
+  film["events"] = events_of(scene, m.shots, m.story ? m.story->events : std::vector<Happening>());
   film["captions"] = Json::array();
   for (const media::TextCue& cue : subtitles(scene, m.shots, frames()).captions)
     film["captions"].push_back({{"from", cue.begin}, {"to", cue.end}, {"text", cue.text}});

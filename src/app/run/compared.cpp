@@ -42,16 +42,6 @@ Variations variations_of(const scene::Scene& scene) {
   }
 }
 
-// whether a complaint is of a key's value, which it names "--set ball.mass=1", long ones cut
-bool is_of(const scene::Complaint& it, const std::string& set) {
-  constexpr std::string_view kFlag = "--set ", kCut = "...";
-  std::string_view named = it.file;
-  if (!named.starts_with(kFlag)) return false;
-  named.remove_prefix(kFlag.size());
-  if (named == set) return true;
-  return named.ends_with(kCut) && set.starts_with(named.substr(0, named.size() - kCut.size()));
-}
-
 // The scene of a run. What is wrong with a value that varies is told where the scene has it.
 scene::Scene varied(const scene::Scene& scene, const Variations& all, std::int64_t i) {
   try {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -535,11 +536,12 @@ std::vector<Happening> Account::happenings() const {
   }
   std::vector<Happening> all;
   for (const Impact* each : impacts)
-    all.push_back({each->seen, fmt::format("{} hits {}, closing at {} m/s", called(cast_, each->body),
-                                           other(*each), numeral(each->speed))});
-  for (const auto& [at, joint] : broken_) all.push_back({at, parting(joint)});
-  for (const auto& [at, joint] : made_) all.push_back({at, joining(joint)});
-  for (const auto& [at, bond] : cracked_) all.push_back({at, cracking(bond)});
+    all.push_back({each->time, each->seen,
+                   fmt::format("{} hits {}, closing at {} m/s", called(cast_, each->body), other(*each),
+                               numeral(each->speed))});
+  for (const auto& [at, joint] : broken_) all.push_back({at, at, parting(joint)});
+  for (const auto& [at, joint] : made_) all.push_back({at, at, joining(joint)});
+  for (const auto& [at, bond] : cracked_) all.push_back({at, at, cracking(bond)});
   return all;
 }
 
@@ -552,8 +554,9 @@ std::vector<std::string> Account::sentences() const {
 }
 
 void sort(std::vector<Happening>& events) {
-  std::stable_sort(events.begin(), events.end(),
-                   [](const Happening& a, const Happening& b) { return a.time < b.time; });
+  std::stable_sort(events.begin(), events.end(), [](const Happening& a, const Happening& b) {
+    return std::pair(a.seen, a.time) < std::pair(b.seen, b.time);
+  });
 }
 
 }  // namespace
@@ -569,7 +572,7 @@ Story story(const scene::Scene& scene) {
       Story its = story(run.scene);
       for (std::string& sentence : its.sentences) all.sentences.push_back(std::move(sentence));
       for (Happening& each : its.events)
-        all.events.push_back({each.time, run.look.name + ": " + std::move(each.text)});
+        all.events.push_back({each.time, each.seen, run.look.name + ": " + std::move(each.text)});
     }
     sort(all.events);
     return all;
@@ -592,7 +595,7 @@ Story story(const scene::Scene& scene) {
   };
   if (scene.trajectory) {
     for (const double t : scene.trajectory->times)
-      if (const auto exact = sim::from_double(t); exact && !read(*exact)) break;
+      if (const auto exact = sim::from_double(t); exact && (scene.duration < *exact || !read(*exact))) break;
   } else {
     const std::int64_t steps = sim::floor(scene.duration * run->rate()), stride = steps / kMostSteps + 1;
     sim::Rational last{0, 1};
@@ -604,7 +607,7 @@ Story story(const scene::Scene& scene) {
   Story all{account.sentences(), account.happenings()};
   for (const sim::RunEvent& event : events)
     for (const std::string& mark : event.marks)
-      all.events.push_back({sim::value(event.time), scene::one_line(mark)});
+      all.events.push_back({sim::value(event.time), sim::value(event.time), scene::one_line(mark)});
   sort(all.events);
   if (trouble && !scene.show_divergence) all.trouble = trouble;
   if (trouble)

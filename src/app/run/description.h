@@ -13,6 +13,7 @@ namespace obscura::app {
 /// Something that happens at an instant: an impact, a joint that breaks, a mark of the scene's own.
 struct Happening {
   double time = 0;   // s of the run
+  double seen = 0;   // s: of the first state after it
   std::string text;  // "the stone hits board[3] at 4.2 m/s"
 };
 

@@ -20,6 +20,7 @@ namespace {
 constexpr std::int64_t kMostValues = 1'000'000;  // of a key
 constexpr std::size_t kLongNumber = 10;          // characters: a longer one is rounded where it is shown
 constexpr int kDigits = 9;
+constexpr std::string_view kFlag = "--set ";  // as complaints name it
 
 // "0.3" as a person types it, "1/3" as the nearest number
 std::string typed(sim::Rational r) {
@@ -74,6 +75,12 @@ Variation::Variation(std::string_view text) {
     if (i < list.size() && list[i] == ']' && depth > 0) --depth;
     if (i < list.size() && (list[i] != ',' || depth > 0)) continue;
     const std::string_view value = list.substr(from, i - from);
+    if (const auto dots = value.find(".."); dots != value.npos && dots > 0)
+      if (const auto a = sim::parse_rational(value.substr(0, dots)),
+          b = sim::parse_rational(value.substr(dots + 2));
+          a && b)
+        throw UsageError(fmt::format("--vary {}: a range is from:to or from:to:stride, as in {}:{}", text,
+                                     value.substr(0, dots), value.substr(dots + 2)));
     if (const auto several = range(value, text))
       values.insert(values.end(), several->begin(), several->end());
     else
@@ -202,6 +209,23 @@ double Variation::number(const std::string& value) const {
   const auto found = sim::parse_rational(value);
   if (!found) throw UsageError(fmt::format("a plot over {}: {} is no number", path, value));
   return sim::value(*found);
+}
+
+bool is_of(const scene::Complaint& it, const std::string& set) {
+  constexpr std::string_view kCut = "...";
+  std::string_view named = it.file;
+  if (!named.starts_with(kFlag)) return false;
+  named.remove_prefix(kFlag.size());
+  if (named == set) return true;
+  return named.ends_with(kCut) && set.starts_with(named.substr(0, named.size() - kCut.size()));
+}
+
+scene::Error of_vary(const scene::Error& error, const std::vector<std::string>& values) {
+  std::vector<scene::Complaint> all = error.complaints;
+  for (scene::Complaint& each : all)
+    if (std::any_of(values.begin(), values.end(), [&](const std::string& set) { return is_of(each, set); }))
+      each.file.replace(0, kFlag.size(), "--vary ");
+  return scene::Error(std::move(all));
 }
 
 }  // namespace obscura::app

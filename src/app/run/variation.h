@@ -5,6 +5,9 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/complaints.h"
+#include "scene/scene.h"
+
 namespace obscura::app {
 
 /// A key of the scene and the values that it takes in turn, as "crate.elasticity=0,0.5,1" says it, or with
@@ -53,5 +56,23 @@ struct Variations {
   /// The same as mathematics: "e = 0.1", "\"Euler\"".
   std::string formula(std::int64_t run) const;
 };
+
+/// Whether a complaint is of a key's value, which it names "--set ball.mass=1", long ones cut.
+bool is_of(const scene::Complaint& it, const std::string& set);
+
+/// The same complaints; those of these values name --vary.
+scene::Error of_vary(const scene::Error& error, const std::vector<std::string>& values);
+
+/// A run's scene by what reads one with these changes of keys. What is wrong with a value that varies is told
+/// as of --vary. Throws scene::Error.
+template <class Read>
+scene::Scene varied_by_flag(const Variations& all, std::int64_t run, const std::vector<std::string>& sets,
+                            const Read& read) {
+  try {
+    return read(all.sets(run, sets));
+  } catch (const scene::Error& error) {
+    throw of_vary(error, all.sets(run, {}));
+  }
+}
 
 }  // namespace obscura::app

@@ -86,7 +86,9 @@ class Sweep {
     for (auto head = heads_.begin(); head != heads_.end(); ++head)
       if (std::find(heads_.begin(), head, *head) != head)
         throw UsageError(fmt::format("'{}' would head two columns", *head));
-    const scene::Scene first = scene::read(file_, variations_.sets(0, sets_));
+    const scene::Scene first =
+        varied_by_flag(variations_, 0, sets_,
+                       [&](const std::vector<std::string>& with) { return scene::read(file_, with); });
     check(asked_, first);
     if (flags.out) spare(*flags.out, file_);
     warn_of_steps(first);
@@ -103,7 +105,11 @@ class Sweep {
     std::string trouble;
     RunResult made;
     try {
-      found = answers(scene::parse(text_, file_, variations_.sets(run, sets_)), asked_);
+      found = answers(varied_by_flag(variations_, run, sets_,
+                                     [&](const std::vector<std::string>& with) {
+                                       return scene::parse(text_, file_, with);
+                                     }),
+                      asked_);
       for (const std::string& note : found.limit_notes)
         say(stderr, "{}: note: run {}: {}\n", file_, run + 1, note);
       if (found.trouble) trouble = app::text(*found.trouble), made.exit = kDiverged;
@@ -162,10 +168,11 @@ int pictures(const SweepFlags& flags, bool still) {
   std::vector<Tile> tiles;
   std::string text;
   for (std::int64_t run = 0; run < variations.size; ++run) {
-    const std::vector<std::string> sets = variations.sets(run, flags.sets);
+    const auto read = [&](const std::vector<std::string>& with) {
+      return run == 0 ? scene::read(flags.scene, with) : scene::parse(text, flags.scene, with);
+    };
     tiles.push_back(
-        {with_run_marks(run == 0 ? scene::read(flags.scene, sets) : scene::parse(text, flags.scene, sets)),
-         variations.words(run)});
+        {with_run_marks(varied_by_flag(variations, run, flags.sets, read)), variations.words(run)});
     text = tiles.back().scene.text;
   }
   const MosaicOptions options{flags.workers, flags.progress, flags.context};

@@ -178,7 +178,7 @@ Picture Comparison::depict(const std::vector<Instant>& runs, double time, double
       for (std::size_t i = 0; i < parts.size(); ++i) {
         const std::string name = fitted(runs_[i].name, Face::bold, size, panels_[i].width);
         const Point at(panels_[i].x + kPlateAround * w, panels_[i].y - kNameRise * w * look_.type_scale);
-        add_prose(name, Face::bold, size, runs_[i].color, at, Align::left, *list);
+        add_prose(name, Face::bold, size, legible(runs_[i].color, colours_), at, Align::left, *list);
       }
       set_decimal_mark(*list, look_.decimal);
       still_->list = std::move(list), still_->parts = std::move(seen);

@@ -199,6 +199,16 @@ bool leaves(const Plot& plot, const PlotArea& area, const Point& end) {
   return plot.range && !comes_to_its_name(area, end);
 }
 
+/// Whether names at the right would not be beside their lines, which go anywhere and end elsewhere.
+bool stray(const Plot& plot, const PlotArea& area) {
+  if (!named(plot) || plot.lines.size() < 2) return false;
+  return std::any_of(plot.lines.begin(), plot.lines.end(), [&](const Series& line) {
+    const Point end = end_of(plot, area, line);
+    const bool cut_off = plot.range && end.y() < area.top + kNamesApart * area.point;
+    return !line.along.empty() && !cut_off && !comes_to_its_name(area, end);
+  });
+}
+
 /// Where names stand far off the ends of their lines they get leaders, and room for these.
 void lead_names(const Plot& plot, PlotArea& area) {
   if (!named(plot) || !area.key.empty()) return;
@@ -417,8 +427,13 @@ void draw_lines(const Plot& plot, const PlotArea& area, List& list, std::optiona
     if (parts.empty()) continue;
     if (number) list.of({Subject::What::chart, *number + int(which)});
     for (const std::vector<Node>& nodes : parts) {
-      add_dashed(nodes, each.style, area.point, list);
-      if (!plot.dotted) add_markers_along(nodes, each.style, area.point, list);
+      // over time no line comes back to where it was
+      const bool orbit = !each.along.empty() && !plot.dotted && each.style > 0;
+      const std::vector<std::vector<Node>> whole{nodes};
+      for (const std::vector<Node>& piece : orbit ? once(nodes, area.point) : whole) {
+        add_dashed(piece, each.style, area.point, list);
+        if (!plot.dotted) add_markers_along(piece, each.style, area.point, list);
+      }
       for (const Node& node : nodes)
         if (plot.dotted)
           add_marker(value_marker_of(each.style), node.at, kDotRadius * area.point, each.color, list);
@@ -477,6 +492,7 @@ void draw_plots(const std::vector<Plot>& plots, const Palette& colours, const st
     std::vector<PlotArea*> all;
     for (std::size_t i = 0; i < shown.size(); ++i) {
       areas.push_back(plot_area(*shown[i], *places[i], point));
+      if (stray(*shown[i], areas.back())) areas.back() = plot_area(*shown[i], *places[i], point, true);
       lead_names(*shown[i], areas.back());
     }
     for (PlotArea& area : areas) all.push_back(&area);

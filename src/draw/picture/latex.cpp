@@ -123,7 +123,9 @@ class LatexWriter {
       return false;
     };
     if ((i > 0 && spaced(i - 1)) || (i + 1 < text.size() && spaced(i + 1))) return;
-    if (out_.empty() || out_.back() == ' ') return;
+    // the blank that ends a command's name is not seen: before a stroke there is one, as behind it
+    const bool stroke = i + 1 < text.size() && text[i + 1] == '/' && !out_.ends_with("\\ ");
+    if (out_.empty() || (out_.back() == ' ' && !stroke)) return;
     put("\\ ");
   }
 

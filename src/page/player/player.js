@@ -8,6 +8,7 @@ import { NOTHING, Values } from "./values.js";
 
 const $ = (/** @type {string} */ id) => /** @type {any} */ (document.getElementById(id));
 const CLOSING = "closing: how fast the points that touch come together, along the normal of the contact";
+const APART = 3; // px: from a tick to the next at least
 const TICK = 4, // px: a click so near an event's tick is meant for it,
   TAP = 8; // and a finger that goes no farther taps
 const TOLD = 200; // ms between two tables while the film plays
@@ -258,7 +259,14 @@ class Player {
     c.fillStyle = style.getPropertyValue("--line");
     c.fillRect(x(0), height / 2 - 2, x(this.last) - x(0), 4);
     c.fillStyle = style.getPropertyValue("--quiet");
-    for (const event of this.film.events) c.fillRect(x(this.frame_of(event)) - 0.75, height / 2 + 5, 1.5, 5);
+    // those that would run into each other are a comb, not a bar
+    let free = -Infinity;
+    for (const event of this.film.events) {
+      const at = x(this.frame_of(event));
+      if (at < free) continue;
+      c.fillRect(at - 0.75, height / 2 + 5, 1.5, 5);
+      free = at + APART;
+    }
   }
 
   /** Where a frame is on the track, px of its width. */
@@ -303,7 +311,7 @@ class Player {
         return;
       }
       const name = document.createElement("b");
-      name.textContent = body.name;
+      name.textContent = body.run === undefined ? body.name : `${body.name}, ${body.run}`;
       tip.append(
         name,
         this.values
@@ -331,6 +339,7 @@ class Player {
     const { head, rows } = this.values.table(this.picture.frame, this.by),
       { time, before } = this.values.instant(this.picture.frame);
     $("when").textContent = `at ${this.values.clock(time, 3)}${before ? ", just before" : ""}`;
+    panel.classList.toggle("runs", head[1] === "run");
     const body = panel.querySelector("tbody"),
       it = this.pointed;
     while (body.rows.length > rows.length) body.deleteRow(-1);
@@ -347,7 +356,7 @@ class Player {
     const heads = panel.querySelector("thead");
     if (!heads.firstChild) heads.append(this.heads(head));
     heads.querySelectorAll("th").forEach((/** @type {HTMLElement} */ each, /** @type {number} */ i) => {
-      if (i === this.by) each.setAttribute("aria-sort", i === 0 ? "ascending" : "descending");
+      if (i === this.by) each.setAttribute("aria-sort", i === 0 || head[i] === "run" ? "ascending" : "descending");
       else each.removeAttribute("aria-sort");
     });
   }
@@ -450,6 +459,17 @@ class Player {
     window.addEventListener("resize", () => this.layout());
     document.addEventListener("fullscreenchange", () => this.layout());
     document.body.classList.toggle("space", film.dimension === 3);
+    // printed, what happens and the events are there, open or not
+    /** @type {any[]} */
+    let closed = [];
+    window.addEventListener("beforeprint", () => {
+      closed = ["story", "events"].map($).filter((each) => !each.open);
+      for (const each of closed) each.open = true;
+    });
+    window.addEventListener("afterprint", () => {
+      for (const each of closed) each.open = false;
+      closed = [];
+    });
     this.list_events();
     this.wire_pointers();
     $("controls").hidden = false;
@@ -568,6 +588,8 @@ class Player {
     else
       $("film")
         .requestFullscreen?.()
+        // a phone lays a wide picture along its longer side, where it may
+        .then(() => /** @type {any} */ (screen.orientation).lock?.(this.film.aspect > 1 ? "landscape" : "portrait"))
         .catch(() => undefined);
   }
 
@@ -704,6 +726,8 @@ async function open() {
   return player;
 }
 
-if (window.parent !== window || /[?#&]embed\b/.test(location.href)) document.body.classList.add("embedded");
+// the page's scroll bar is there from the start: the picture is as wide as it leaves
+if (window.parent !== window || /[?#&]embed\b/.test(location.href))
+  for (const each of [document.documentElement, document.body]) each.classList.add("embedded");
 // a page around this one, and tests, may turn it: obscura.then((player) => player.seek(1.5))
 /** @type {any} */ (window).obscura = open();

@@ -14,13 +14,14 @@ const raised = (/** @type {number} */ power) =>
 /**
  * A number with so many digits that count, and none finer than it is known; one that is nearer to zero than that is 0.
  * @param {number} x
- * @param {number} [within] how exactly it is known
+ * @param {number} [within] the last digit that is known: a power of ten
  * @param {number} [digits]
  */
 export function numeral(x, within = 0, digits = 3) {
-  if (!(Math.abs(x) > within)) return "0";
-  const power = Math.floor(Math.log10(Math.abs(x))),
-    known = within > 0 ? -Math.floor(Math.log10(within)) : Infinity;
+  if (!(Math.abs(x) > within / 2)) return "0";
+  if (Math.abs(x) < within) x = Math.sign(x) * within;
+  const power = Math.floor(Math.log10(Math.abs(x)) + 1e-12),
+    known = within > 0 ? -Math.round(Math.log10(within)) : Infinity;
   const decimals = Math.max(Math.min(digits - 1 - power, known), 0);
   if (power >= SMALL) return minus(signless(x.toFixed(decimals)));
   const short = (/** @type {number} */ up) => (x / 10 ** up).toFixed(Math.min(digits - 1, Math.max(known + up, 0)));
@@ -30,12 +31,12 @@ export function numeral(x, within = 0, digits = 3) {
 }
 
 /**
- * A number with three decimals; in a tiny room with a power of ten.
+ * A number with as many decimals as are known; in a tiny room with a power of ten.
  * @param {number} x
- * @param {number} within how exactly it is known
+ * @param {number} within the last digit that is known: a power of ten
  */
 export function fixed(x, within) {
-  return within < 2e-6 ? numeral(x, within, 4) : minus(signless(x.toFixed(Math.max(3, -Math.ceil(Math.log10(within))))));
+  return within < 5e-7 ? numeral(x, within, 4) : minus(signless(x.toFixed(Math.max(0, -Math.round(Math.log10(within))))));
 }
 
 /**
@@ -139,7 +140,14 @@ export class Values {
    */
   table(frame, by) {
     const axes = this.space ? ["x", "y", "z"] : ["x", "y"];
-    const head = ["body", ...axes.map((a) => `${a} / m`), ...axes.map((a) => `v${a} / (m/s)`), "speed / (m/s)"];
+    const several = this.film.bodies.some((/** @type {any} */ body) => body.run !== undefined);
+    const head = [
+      "body",
+      ...(several ? ["run"] : []),
+      ...axes.map((a) => `${a} / m`),
+      ...axes.map((a) => `v${a} / (m/s)`),
+      "speed / (m/s)",
+    ];
     const rows = this.film.bodies
       .filter((/** @type {any} */ body) => !body.fixed)
       .map((/** @type {any} */ body) => {
@@ -147,7 +155,8 @@ export class Values {
         const [length, speed] = body.within,
           values = [...now.place, ...now.velocity, now.speed];
         const words = values.map((x, i) => fixed(x, i < now.place.length ? length : speed));
-        return { body, values, words };
+        // of a column that is no number the place in the scene, the first of which comes first
+        return several ? { body, values: [-body.part, ...values], words: [body.run ?? "", ...words] } : { body, values, words };
       });
     if (by === 0)
       rows.sort((/** @type {any} */ p, /** @type {any} */ q) => p.body.name.localeCompare(q.body.name, undefined, { numeric: true }));
