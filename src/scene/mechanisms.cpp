@@ -159,9 +159,11 @@ void rub(const Fields& fields, double friction, const std::vector<sim::Vec<D>>& 
       const double from = i == 0 ? 0 : it.around[i - 1], to = i < it.around.size() ? it.around[i] : 0;
       return sim::rope_piece<D>(at[i], at[i + 1], from - to).direction;
     };
+    it.wraps.assign(it.around.size(), 0);
     for (std::size_t i = 0; i < it.around.size(); ++i) {
       if (it.around[i] == 0) continue;
-      it.wrap += sim::wrap_between(piece(i), piece(i + 1), it.around[i]);
+      const double wrap = sim::wrap_between(piece(i), piece(i + 1), it.around[i]);
+      it.wrap += wrap, it.wraps[i] = 2 * std::numbers::pi * it.whole_turns + wrap;
     }
   }
 }
