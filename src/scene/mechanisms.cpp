@@ -159,9 +159,11 @@ void rub(const Fields& fields, double friction, const std::vector<sim::Vec<D>>& 
       const double from = i == 0 ? 0 : it.around[i - 1], to = i < it.around.size() ? it.around[i] : 0;
       return sim::rope_piece<D>(at[i], at[i + 1], from - to).direction;
     };
+    it.wraps.assign(it.around.size(), 0);
     for (std::size_t i = 0; i < it.around.size(); ++i) {
       if (it.around[i] == 0) continue;
-      it.wrap += sim::wrap_between(piece(i), piece(i + 1), it.around[i]);
+      const double wrap = sim::wrap_between(piece(i), piece(i + 1), it.around[i]);
+      it.wrap += wrap, it.wraps[i] = 2 * std::numbers::pi * it.whole_turns + wrap;
     }
   }
 }
@@ -329,10 +331,10 @@ void pulley(const Fields& fields, const std::string& name, const Seating<D>& ros
   } else if (one_piece && pieces[0].later) {
     pieces[0].length = 0;  // as long as it is then
   }
-  // numbered from the first end as typed
-  if (turned_round) std::reverse(pieces.begin(), pieces.end());
+  // as they follow each other, from an end that moves; numbered from the first end as typed
   for (std::size_t k = 0; k < pieces.size(); ++k) {
-    pieces[k].name = pieces.size() == 1 ? name : fmt::format("{}[{}]", name, k);
+    const std::size_t number = turned_round ? pieces.size() - 1 - k : k;
+    pieces[k].name = pieces.size() == 1 ? name : fmt::format("{}[{}]", name, number);
     world.model.joints.push_back(std::move(pieces[k]));
     world.state.broken.push_back(world.model.joints.back().later);
   }

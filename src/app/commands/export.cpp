@@ -116,12 +116,21 @@ class Stage {
       it.rotations.push_back(narrow(body.orientation, it.rotations));
     }
     for (const auto& spring : now.springs) stretch(glb.nodes[node++], spring.a, spring.b, !spring.loose);
+    std::vector<draw::RopeLine> lines;
+    draw::RopeLine last;
+    std::size_t line = 0;
     for (std::size_t i = 0; i < now.joints.size(); ++i) {
       if (!far(cast_.joints[i])) continue;
       const bool whole = !now.joints[i].broken;
       if (cast_.joints[i].places.empty()) stretch(glb.nodes[node++], now.joints[i].a, now.joints[i].b, whole);
-      for (const draw::RopeLine& line : draw::rope_lines(cast_.joints[i], now))
-        stretch(glb.nodes[node++], line.from, line.to, whole);
+      // what has left a wheel has fewer pieces, of the joints that are one
+      const std::size_t its = cast_.joints[i].places.empty() ? 0 : cast_.joints[i].places.size() - 1;
+      if (now.joints[i].with >= 0) lines = draw::rope_lines(cast_, i, now), line = 0;
+      for (std::size_t k = 0; k < its; ++k) {
+        const bool there = line < lines.size();
+        if (there) last = lines[line++];
+        stretch(glb.nodes[node++], last.from, last.to, whole && there);
+      }
     }
     for (const sim::SceneInfo::Rail& rail : cast_.rails) {
       if (!on_node(rail)) continue;

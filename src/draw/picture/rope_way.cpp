@@ -12,9 +12,10 @@ using sim::Vec3;
 
 namespace {
 
-constexpr double kArc = 0.05;    // rad: of a rope on a wheel that is drawn as straight
-constexpr double kLoose = 1e-5;  // of a piece's length: more than this hangs loose
-constexpr int kSag = 20;         // pieces of what hangs
+constexpr double kArc = 0.05;       // rad: of a rope on a wheel that is drawn as straight
+constexpr double kStraight = 1e-6;  // rad: of one that is
+constexpr double kLoose = 1e-5;     // of a piece's length: more than this hangs loose
+constexpr int kSag = 20;            // pieces of what hangs
 
 }  // namespace
 
@@ -24,13 +25,41 @@ Vec3 place_of(const sim::Snapshot& now, const sim::SceneInfo::Joint::Place& at) 
   return body.position + body.orientation * at.local;
 }
 
-std::vector<RopeLine> rope_lines(const sim::SceneInfo::Joint& joint, const sim::Snapshot& now) {
+namespace {
+
+/// A place that a rope is at, and its wheel there, as sim::Winding::offset has it.
+struct RopePlace {
+  const sim::SceneInfo::Joint::Place* place = nullptr;
+  double offset = 0;
+};
+std::vector<RopePlace> rope_places(const sim::SceneInfo& cast, std::size_t i, const sim::Snapshot& now) {
+  std::vector<RopePlace> all;
+  const sim::Snapshot::Joint& its = now.joints[i];
+  if (its.with < 0) return all;
+  const std::size_t last = i + std::size_t(its.with);
+  for (std::size_t joint = i; joint <= last; ++joint) {
+    const sim::SceneInfo::Joint& piece = cast.joints[joint];
+    const std::size_t n = piece.places.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const bool begins = k == 0, ends = k + 1 == n;
+      if ((begins && joint > i) || (ends && joint < last)) continue;
+      const bool inner = !begins && !ends;
+      if (inner && (k <= std::size_t(its.off_a) || k + 1 + std::size_t(its.off_b) >= n)) continue;
+      const double around = inner && !piece.around.empty() ? piece.around[k - 1] : 0;
+      all.push_back({&piece.places[k], begins ? piece.offset_a : ends ? piece.offset_b : around});
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<RopeLine> rope_lines(const sim::SceneInfo& cast, std::size_t number, const sim::Snapshot& now) {
   std::vector<RopeLine> all;
-  const std::size_t n = joint.places.size();
-  for (std::size_t i = 0; i + 1 < n; ++i) {
-    const Vec3 p = place_of(now, joint.places[i]), q = place_of(now, joint.places[i + 1]);
-    const auto inner = [&](std::size_t k) { return joint.around.empty() ? 0 : joint.around[k - 1]; };
-    const double a = i == 0 ? joint.offset_a : inner(i), b = i + 2 == n ? joint.offset_b : inner(i + 1);
+  const std::vector<RopePlace> places = rope_places(cast, number, now);
+  for (std::size_t i = 0; i + 1 < places.size(); ++i) {
+    const Vec3 p = place_of(now, *places[i].place), q = place_of(now, *places[i + 1].place);
+    const double a = places[i].offset, b = places[i + 1].offset;
     if (a == 0 && b == 0) {
       const double far = (q - p).norm();
       all.push_back({p, q, far > 0 ? Vec3((q - p) / far) : Vec3(Vec3::UnitX())});
@@ -45,14 +74,20 @@ std::vector<RopeLine> rope_lines(const sim::SceneInfo::Joint& joint, const sim::
 
 namespace {
 
+/// The last of the joints of a rope that are one with joint `i`.
+const sim::SceneInfo::Joint& last_piece(const sim::SceneInfo& cast, std::size_t i, const sim::Snapshot& now) {
+  return cast.joints[i + std::size_t(std::max(0, now.joints[i].with))];
+}
+
 /// A piece of a rope where it lies on the wheel at its a or at its b, as it goes on from there.
 struct OnWheel {
   Vec3 along = Vec3::UnitX();
   double offset = 0;
 };
-OnWheel leaving(const sim::SceneInfo::Joint& joint, bool at_a, const sim::Snapshot& now) {
-  const std::vector<RopeLine> lines = rope_lines(joint, now);
-  return at_a ? OnWheel{lines.front().along, joint.offset_a} : OnWheel{-lines.back().along, -joint.offset_b};
+OnWheel leaving(const sim::SceneInfo& cast, std::size_t i, bool at_a, const sim::Snapshot& now) {
+  const std::vector<RopeLine> lines = rope_lines(cast, i, now);
+  return at_a ? OnWheel{lines.front().along, cast.joints[i].offset_a}
+              : OnWheel{-lines.back().along, -last_piece(cast, i, now).offset_b};
 }
 
 /// The arc of a rope around a wheel, from where it comes along `before` to just before it goes along `after`.
@@ -60,7 +95,7 @@ std::vector<Vec3> arc_between(const Vec3& before, const Vec3& after, double offs
                               const Vec3& center) {
   constexpr double kRound = 2 * std::numbers::pi;
   double turn = std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
-  if (turn != 0 && (turn > 0) != (offset > 0)) turn += offset > 0 ? kRound : -kRound;
+  if (std::fabs(turn) > kStraight && (turn > 0) != (offset > 0)) turn += offset > 0 ? kRound : -kRound;
   turn += (offset > 0 ? kRound : -kRound) * rounds;
   const int steps = std::max(1, int(std::ceil(std::fabs(turn) / kArc)));
   std::vector<Vec3> arc;
@@ -76,19 +111,21 @@ std::vector<Vec3> arc_between(const Vec3& before, const Vec3& after, double offs
 /// to that wheel to where this one leaves it; nothing where there is no such piece, or it has broken.
 std::vector<Vec3> arc_on_wheel(const sim::SceneInfo& cast, std::size_t i, bool at_a,
                                const sim::Snapshot& now) {
-  const sim::SceneInfo::Joint& joint = cast.joints[i];
+  const sim::SceneInfo::Joint& joint = at_a ? cast.joints[i] : last_piece(cast, i, now);
   if ((at_a ? joint.offset_a : joint.offset_b) == 0) return {};
   const int wheel = (at_a ? joint.places.front() : joint.places.back()).body;
-  const OnWheel after = leaving(joint, at_a, now);
+  const OnWheel after = leaving(cast, i, at_a, now);
   for (std::size_t k = i; k-- > 0;) {
-    const sim::SceneInfo::Joint& other = cast.joints[k];
-    if (other.kind != joint.kind || other.rope != joint.rope || other.places.empty() || now.joints[k].broken)
+    const sim::SceneInfo::Joint& first = cast.joints[k];
+    if (first.kind != joint.kind || first.rope != joint.rope || first.places.empty() ||
+        now.joints[k].broken || now.joints[k].with < 0)
       continue;
     for (const bool its_a : {true, false}) {
+      const sim::SceneInfo::Joint& other = its_a ? first : last_piece(cast, k, now);
       if ((its_a ? other.offset_a : other.offset_b) == 0 ||
           (its_a ? other.places.front() : other.places.back()).body != wheel)
         continue;
-      const Vec3 before = -leaving(other, its_a, now).along, along = after.along;
+      const Vec3 before = -leaving(cast, k, its_a, now).along, along = after.along;
       return arc_between(before, along, after.offset, 0,
                          place_of(now, at_a ? joint.places.front() : joint.places.back()));
     }
@@ -120,7 +157,9 @@ std::vector<Vec3> hanging_rope(const Vec3& a, const Vec3& b, const Vec3& down, d
 
 std::vector<Vec3> rope_way(const sim::SceneInfo& cast, std::size_t i, const sim::Snapshot& now) {
   const sim::SceneInfo::Joint& joint = cast.joints[i];
-  const std::vector<RopeLine> lines = rope_lines(joint, now);
+  if (now.joints[i].with < 0) return {};
+  const std::vector<RopePlace> places = rope_places(cast, i, now);
+  const std::vector<RopeLine> lines = rope_lines(cast, i, now);
   const Vec3 down = cast.gravity.norm() > 0 ? Vec3(cast.gravity.normalized()) : Vec3(-Vec3::UnitY());
   // the piece that what is loose hangs from
   std::size_t loose = 0;
@@ -133,9 +172,9 @@ std::vector<Vec3> rope_way(const sim::SceneInfo& cast, std::size_t i, const sim:
   std::vector<Vec3> way;
   for (std::size_t k = 0; k < lines.size(); ++k) {
     const RopeLine& line = lines[k];
-    if (k > 0 && !joint.around.empty() && joint.around[k - 1] != 0)
-      for (const Vec3& point : arc_between(lines[k - 1].along, line.along, joint.around[k - 1], joint.rounds,
-                                           place_of(now, joint.places[k])))
+    if (k > 0 && places[k].offset != 0)
+      for (const Vec3& point : arc_between(lines[k - 1].along, line.along, places[k].offset, joint.rounds,
+                                           place_of(now, *places[k].place)))
         way.push_back(point);
     const double length = (line.to - line.from).norm(), slack = now.joints[i].slack;
     if (k == loose && slack > kLoose * length) {

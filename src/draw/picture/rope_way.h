@@ -14,9 +14,10 @@ struct RopeLine {
   sim::Vec3 from, to, along;  // the last a unit vector
 };
 
-/// The straight pieces of the rope of one joint, in the order of its places; tangent to the wheels at its
-/// ends.
-std::vector<RopeLine> rope_lines(const sim::SceneInfo::Joint& joint, const sim::Snapshot& now);
+/// The straight pieces of the rope of joint `i`, in the order of its places; tangent to the wheels that it is
+/// on. Of one that has left the wheel at its end it goes on to the end of the rope's next joints; those have
+/// none.
+std::vector<RopeLine> rope_lines(const sim::SceneInfo& cast, std::size_t i, const sim::Snapshot& now);
 
 /// A rope of this length from a to b, longer than the way: a parabola, m. `down`: a unit vector.
 std::vector<sim::Vec3> hanging_rope(const sim::Vec3& a, const sim::Vec3& b, const sim::Vec3& down,

@@ -293,7 +293,7 @@ void draw_pulleys(const Stage& stage, const View& view, const sim::Snapshot& now
     for (const Vec3& at : rope_way(stage.cast, i, now))
       nodes.push_back({view.page(at), kRope * weight, color});
     list.of({Subject::What::joint, int(i)});
-    list.add(nodes, Cap::round);
+    if (!nodes.empty()) list.add(nodes, Cap::round);
     // made fast to the room or to a body, or led around a point of one
     for (const sim::SceneInfo::Joint::Place& at : joint.places) {
       const std::size_t k = std::size_t(&at - joint.places.data());

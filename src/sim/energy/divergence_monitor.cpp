@@ -152,6 +152,7 @@ std::optional<Trouble> DivergenceMonitor<D>::check_joints(const State<D>& state,
     if (joint.linked || (i < state.broken.size() && state.broken[i])) continue;
     Row<D> J[kMostHeld<D>];
     double off[kMostHeld<D>];
+    if (one_with_another(state, i)) continue;
     const int n = rows<D>(joint, i, state, at_, J, off);
     double size = joint.length;
     joint.each_body([&](int body) {

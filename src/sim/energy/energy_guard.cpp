@@ -15,6 +15,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim/constraint/joints/joint.h"
 #include "sim/energy/energy.h"
 #include "sim/model/body_motion.h"
 
@@ -222,8 +223,9 @@ void EnergyGuard<D>::gather(const State<D>& state) {
     // one that has broken in this step has held in it
     if (i < broken_.size() && broken_[i]) continue;
     link(joint.a.body, joint.b.body, true);
-    if (!joint.over.empty())
-      joint.each_body([&](int a) { joint.each_body([&](int b) { link(a, b, true); }); });
+    if (!joint.over.empty() || wound(state, i).with > 0)
+      each_body_held(model_, state, i,
+                     [&](int a) { each_body_held(model_, state, i, [&](int b) { link(a, b, true); }); });
   }
   for (const Articulation<D>& chain : model_.chains) {
     for (const int body : chain.bodies) link(body, chain.bodies[0], true), bound_[body].held = true;

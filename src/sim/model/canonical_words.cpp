@@ -100,7 +100,11 @@ std::vector<std::uint64_t> words(const State<D>& state) {
     const auto rounds = [](double angle) { return std::llround(angle / (2 * std::numbers::pi)); };
     const std::int64_t a = rounds(state.wound[i].a), b = rounds(state.wound[i].b);
     if (a != 0 || b != 0) w.integer(std::int64_t(i)), w.integer(a), w.integer(b);
-    if (state.wound[i].drag != 0) w.number(state.wound[i].drag);
+    const Wound& it = state.wound[i];
+    if (it.drag != 0) w.number(it.drag);
+    if (it.off_a != 0 || it.off_b != 0) w.integer(it.off_a), w.integer(it.off_b);
+    if (it.with != 0) w.integer(it.with);
+    if (it.given != 0) w.number(it.given);
   }
   for (const Made<D>& it : state.made) {
     w.template numbers<D>(it.place);

@@ -171,11 +171,12 @@ struct Joint {
   std::vector<End<D>> over;
   Winding<D> on_a, on_b;  // a pulley in the plane: wheels about its ends, which its rope runs onto
   std::vector<double>
-      around;           // a pulley with friction: as Winding::offset, of each that its rope slides over
-  double wrap = 0;      // its: the angle of the rope on those that are wheels, at the start, rad
-  int whole_turns = 0;  // its: those of that around each
-  int rope = -1;        // a pulley: its number; those of one rope have the same, and break together
-  double ratio = 1;     // a gear: of the first joint's coordinate, and the second's; a screw: m a radian
+      around;                 // a pulley with friction: as Winding::offset, of each that its rope slides over
+  double wrap = 0;            // its: the angle of the rope on those that are wheels, at the start, rad
+  std::vector<double> wraps;  // its: the same of each, 0 of points
+  int whole_turns = 0;        // its: those of that around each
+  int rope = -1;              // a pulley: its number; those of one rope have the same, and break together
+  double ratio = 1;  // a gear: of the first joint's coordinate, and the second's; a screw: m a radian
   std::shared_ptr<const std::array<Joint, 2>> geared;  // and both
   bool belt = false;  // a gear: instead of teeth, around wheels of the radii on_a.offset and on_b.offset
   std::shared_ptr<const Curve<D>> curve;  // a wire: in b's frame; for the room, in the room
@@ -211,8 +212,8 @@ struct Joint {
 /// sim/fracture/bond_load.h.
 template <int D>
 struct Bond {
-  int a = -1, b = -1;       // bodies; b = -1: the room
-  double strength = 1e300;  // N
+  int a = -1, b = -1;              // bodies; b = -1: the room
+  double strength = 1e300;         // N
   double impact_duration = 0.001;  // s: an impulse counts as a force of that over this
 };
 

@@ -149,6 +149,8 @@ struct Snapshot {
     std::vector<Hold> holds{};  // of a mechanism: what it puts on each body, where it holds it
     bool broken = false;
     double slack = 0;  // of a pulley: how much of its rope hangs loose, m
+    // of a pulley that has left wheels, as sim::Wound has them
+    int off_a = 0, off_b = 0, with = 0;
   };
   struct Contact {
     int body = -1, wall = -1;                          // wall: -1 where `other` is what it touches

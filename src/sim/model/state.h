@@ -144,8 +144,23 @@ struct EventLog {
 struct Wound {
   double a = 0, b = 0;
   double drag = 0;  // N: the tension at a less that at b
+  // Of one with friction: so many of the wheels that it slides over, from a and from b on, it has left.
+  int off_a = 0, off_b = 0;
+  // Of one on wheels: the joint is one with so many pieces of its rope after it, which has left the wheels
+  // between them. Below zero: it is one with that so many before it, and holds nothing.
+  int with = 0;
+  double given = 0;  // m: what it has got of its rope, from the others, while that was off a wheel
 
   bool operator==(const Wound&) const = default;
+};
+
+/// A wheel that a rope has left, and how far it would be wrapped around it, all rounds counted.
+struct WheelLeft {
+  int joint = 0;    // the piece that slides over it, or that ends there
+  int wheel = 0;    // which of Joint::around
+  double wrap = 0;  // rad, below zero
+
+  bool operator==(const WheelLeft&) const = default;
 };
 
 /// Of a joint in State::broken.
@@ -193,7 +208,8 @@ struct State {
   EventLog events;             // of a model with conditions
   std::vector<int> on_piece;   // of a model with wires one a joint: the piece of the wire that its a is on
   std::vector<Wound> wound;    // of a model with ropes on wheels, or with friction, one a joint
-  std::vector<Made<D>> made;   // of a model whose events make joints one a joint
+  std::vector<WheelLeft> wheels_left;
+  std::vector<Made<D>> made;  // of a model whose events make joints one a joint
 
   // bonded bodies (sim/step/bonded_bodies.h): then all above describes the parts, and `bonded` is stepped
   std::vector<char> intact;             // one a bond: whether it is whole

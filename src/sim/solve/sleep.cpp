@@ -13,6 +13,7 @@
 #include <cmath>
 
 #include "sim/collide/rails.h"
+#include "sim/constraint/joints/joint.h"
 #include "sim/constraint/material.h"
 #include "sim/force/explosion.h"
 #include "sim/force/force_coupling.h"
@@ -37,10 +38,12 @@ constexpr int kFewContacts = D == 2 ? 100 : 250;
 
 // act(a, b) for each two bodies of a joint
 template <int D, class Act>
-void each_two(const Joint<D>& joint, Act&& act) {
+void each_two(const Model<D>& model, const State<D>& state, std::size_t number, Act&& act) {
+  const Joint<D>& joint = model.joints[number];
   act(joint.a.body, joint.b.body);
-  if (joint.over.empty()) return;
-  joint.each_body([&](int a) { joint.each_body([&](int b) { act(a, b); }); });
+  if (joint.over.empty() && wound(state, number).with <= 0) return;
+  each_body_held(model, state, number,
+                 [&](int a) { each_body_held(model, state, number, [&](int b) { act(a, b); }); });
 }
 
 }  // namespace
@@ -103,7 +106,7 @@ void Sleep<D>::build_islands(const State<D>& state, std::span<const Contact<D>> 
   }
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     if (state.broken[i]) continue;
-    each_two(model_.joints[i], [&](int a, int b) {
+    each_two(model_, state, i, [&](int a, int b) {
       if (both(a, b)) roots_.join(a, b);
     });
   }
@@ -147,7 +150,7 @@ bool Sleep<D>::wake(State<D>& state, std::span<const Contact<D>> near, double sp
   };
   for (const Spring<D>& spring : model_.springs) pull(spring.a.body, spring.b.body);
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
-    if (!state.broken[i]) each_two(model_.joints[i], pull);
+    if (!state.broken[i]) each_two(model_, state, i, pull);
   }
   for (const Grip<D>& grip : state.grips) {
     if (grip.body >= 0 && state.frozen[grip.body]) woken_.push_back(grip.body);

@@ -48,7 +48,12 @@ void fields(Visit& visit, Happening& it) {
 }
 template <class Visit>
 void fields(Visit& visit, Wound& it) {
-  visit(it.a), visit(it.b), visit(it.drag);
+  visit(it.a), visit(it.b), visit(it.drag), visit(it.off_a), visit(it.off_b), visit(it.with);
+  visit(it.given);
+}
+template <class Visit>
+void fields(Visit& visit, WheelLeft& it) {
+  visit(it.joint), visit(it.wheel), visit(it.wrap);
 }
 template <class Visit, int D>
 void fields(Visit& visit, Made<D>& it) {
@@ -75,7 +80,8 @@ void fields(Visit& visit, State<D>& it) {
   visit(it.intact), visit(it.part_poses), visit(it.bonded), visit(it.contacts), visit(it.frozen),
       visit(it.quiet);
   visit(it.broken), visit(it.joint_forces), visit(it.joint_torques), visit(it.work), visit(it.released);
-  visit(it.events), visit(it.on_piece), visit(it.wound), visit(it.made);
+  visit(it.events), visit(it.on_piece), visit(it.wound), visit(it.wheels_left);
+  visit(it.made);
 }
 
 template <class T>
@@ -218,8 +224,17 @@ bool fits(const State<D>& state, const Model<D>& model) {
   good = good && sized(state.made, joints);
   for (const Made<D>& it : state.made)
     good = good && it.place.allFinite() && it.turn.allFinite() && std::isfinite(it.length);
-  for (const Wound& it : state.wound)
-    good = good && std::isfinite(it.a) && std::isfinite(it.b) && std::isfinite(it.drag);
+  for (std::size_t i = 0; i < state.wound.size() && good; ++i) {
+    const Wound& it = state.wound[i];
+    const std::size_t wheels = model.joints[i].around.size();
+    good = std::isfinite(it.a) && std::isfinite(it.b) && std::isfinite(it.drag) && std::isfinite(it.given) &&
+           it.off_a >= 0 && it.off_b >= 0 && std::size_t(it.off_a) + std::size_t(it.off_b) <= wheels;
+    // all that are one are pieces of one rope
+    const std::size_t other = i + std::size_t(std::int64_t(it.with));
+    good = good && other < joints && model.joints[other].rope == model.joints[i].rope;
+  }
+  for (const WheelLeft& it : state.wheels_left)
+    good = good && it.joint >= 0 && std::size_t(it.joint) < joints && it.wheel >= 0 && std::isfinite(it.wrap);
   for (const Contact<D>& contact : state.contacts) {
     good = good && body(contact.key.a) && (body(contact.key.b) || wall(-1 - contact.key.b)) &&
            contact.touching <= ContactMode::slide;

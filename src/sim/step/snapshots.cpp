@@ -145,7 +145,7 @@ void hold(const Model<D>& model, const State<D>& state, Snapshot& now) {
   std::vector<BodyMotion<D>> motions;
   for (std::size_t i = 0; i < model.joints.size() && i < state.joint_forces.size(); ++i) {
     const Joint<D>& joint = model.joints[i];
-    if (state.broken[i]) continue;
+    if (state.broken[i] || one_with_another(state, i)) continue;
     const auto push = [&](int body, const Wrench<D>& by) {
       if (body < 0) return;
       now.bodies[std::size_t(body)].held += to_3d<D>(by.f);
@@ -190,6 +190,10 @@ void hold(const Model<D>& model, const State<D>& state, Snapshot& now) {
       };
       end(joint.a), end(joint.b);
       for (const End<D>& it : joint.over) end(it);
+      for (int k = 1; k <= now.joints[i].with; ++k) {
+        end((&joint)[k].b);
+        for (const End<D>& it : (&joint)[k].over) end(it);
+      }
       held.at = held.place;
       // teeth push wheels and racks, where they meet; what turns on a body is only reckoned from it
       if (joint.geared && body != (*joint.geared)[0].a.body && body != (*joint.geared)[1].a.body) return;
@@ -209,7 +213,7 @@ void hold(const Model<D>& model, const State<D>& state, Snapshot& now) {
     });
     if (drag == 0) continue;
     hold_drag<D>(
-        {joint, at(joint.a.body), at(joint.b.body), turn_between(joint, state), motions, wound(state, i)},
+        {joint, at(joint.a.body), at(joint.b.body), turn_between(joint, i, state), motions, wound(state, i)},
         row[0]);
     each_side(row[0], [&](int body, const Vec<D>& along, const AngularVec<D>& angular) {
       holds(drag, body, along, angular);
@@ -354,6 +358,8 @@ Snapshot snapshot(const Model<D>& scene, const State<D>& state, const Stepper<D>
       joint.torque = turning_3d<D>(state.joint_torques[i]);
     }
     joint.broken = i < state.broken.size() && state.broken[i] != 0;
+    const Wound rope = wound(state, i);
+    joint.off_a = rope.off_a, joint.off_b = rope.off_b, joint.with = rope.with;
     now.joints.push_back(joint);
   }
   hold(model, state, now);

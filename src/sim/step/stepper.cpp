@@ -243,7 +243,9 @@ std::optional<Trouble> Stepper<D>::advance_pieces(State<D>& state, double from, 
   if (from == 0) state.touches.clear();
   const double h = step_length(model_.rate);
   while (from < fraction) {
-    const double to = next_cut(state.step, from, fraction);
+    double to = next_cut(state.step, from, fraction);
+    if (contact_ && wound_ropes_)
+      if (const auto wheel = wheel_time(model_, state, (to - from) * h)) to = from + *wheel / h;
     const double begun = time({state.step, from}, model_.rate), ended = time({state.step, to}, model_.rate);
     divergence_.spring_angles(state, spring_angles_);
     if (!contact_) plan(state);
@@ -307,8 +309,8 @@ std::optional<Trouble> Stepper<D>::follow_pulleys(State<D>& state, double t, dou
   if (!ended) return {};
   const std::string& name = model_.joints[std::size_t(ended->joint)].name;
   const char* const advice = "end the run before, or release the rope by a condition";
-  if (ended->left)
-    return Trouble{t, name, "rope", "is straight at a wheel and leaves it, which is not followed", advice};
+  if (ended->beyond)
+    return Trouble{t, name, "rope", "comes around to the other side of a wheel that it has left", advice};
   return Trouble{t, name, "straight piece", "has no length left: its end comes to what the rope runs over",
                  advice};
 }

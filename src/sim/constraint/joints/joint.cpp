@@ -15,9 +15,24 @@
 #include "sim/constraint/joints/weld.h"
 #include "sim/constraint/joints/wire.h"
 #include "sim/math/lie_step.h"
-#include "sim/model/script.h"
 
 namespace obscura::sim {
+
+namespace {
+
+// the turn of a body of a state, whole rounds included
+template <int D>
+struct RoundsIn {
+  const State<D>& state;
+
+  AngularVec<D> operator()(int body) const {
+    const int k = body < 0 ? -1 : turning(state, body);
+    return k < 0 ? AngularVec<D>(AngularVec<D>::Zero())
+                 : AngularVec<D>(rounds<D>(state.turn[std::size_t(k)]));
+  }
+};
+
+}  // namespace
 
 // in the order of JointKind
 template <int D>
@@ -43,11 +58,12 @@ int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
 
 template <int D>
 AngularVec<D> turn_between(const Joint<D>& joint, const State<D>& state) {
-  return joint.turn_between([&](int body) {
-    const int k = body < 0 ? -1 : turning(state, body);
-    return k < 0 ? AngularVec<D>(AngularVec<D>::Zero())
-                 : AngularVec<D>(rounds<D>(state.turn[std::size_t(k)]));
-  });
+  return joint.turn_between(RoundsIn<D>{state});
+}
+
+template <int D>
+AngularVec<D> turn_between(const Joint<D>& joint, std::size_t number, const State<D>& state) {
+  return turn_between(joint, wound(state, number), RoundsIn<D>{state});
 }
 
 template <int D>
@@ -56,7 +72,7 @@ int rows(const Joint<D>& joint, std::size_t number, const State<D>& state,
   static const BodyMotion<D> room;
   const auto side = [&](int body) -> const BodyMotion<D>& { return body < 0 ? room : at[std::size_t(body)]; };
   return rows(joint, side(joint.a.body), side(joint.b.body),
-              {turn_between(joint, state), wound(state, number)}, out, off, at);
+              {turn_between(joint, number, state), wound(state, number)}, out, off, at);
 }
 
 template <int D>
@@ -93,74 +109,6 @@ Wrench<D> coil_load(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMot
   const double rate =
       (row.along.dot(a.v) + row.angular_a.dot(a.w)) - (row.along.dot(b.v) + row.angular_b.dot(b.w));
   return load_on_a(joint, row, a, b) * joint.coil->force(c, rate);
-}
-
-namespace {
-
-constexpr double kLeft = 1e-9;  // rad: so far from the wheel's other side it has left it
-
-// Whether a rope that is tight has left a wheel that it slides over, or the wheel between two pieces of it.
-// Its rows have it on the rim all the same, and the wheel would pull at it from outside.
-bool leaves(const JointPose<2>& at) {
-  return !at.joint.around.empty() && least_wrap(at) < -kLeft && is_tight(at);
-}
-bool leaves(const JointPose<2>& before, const JointPose<2>& after) {
-  const Joint<2>&p = before.joint, &q = after.joint;
-  return p.rope == q.rope && p.b.body == q.a.body && p.on_b.offset != 0 && q.on_a.offset != 0 &&
-         wrap_between(before, after) < -kLeft && is_tight(before) && is_tight(after);
-}
-
-}  // namespace
-
-template <int D>
-std::optional<EndOfRope> follow_ropes(const Model<D>& model, State<D>& state,
-                                      std::type_identity_t<std::span<const BodyMotion<D>>> begun,
-                                      double done) {
-  static const BodyMotion<D> room;
-  static const AngularVec<D> turn = AngularVec<D>::Zero();
-  const double h = step_length(model.rate);
-  std::optional<EndOfRope> ended;
-  std::vector<BodyMotion<D>> all(model.bodies.size());
-  if (has_wound_ropes(model)) state.wound.resize(model.joints.size());
-  const auto pose = [&](std::size_t i, std::span<const BodyMotion<D>> of) {
-    const auto side = [&](int body) -> const BodyMotion<D>& {
-      return body < 0 ? room : of[std::size_t(body)];
-    };
-    const Joint<D>& joint = model.joints[i];
-    return JointPose<D>{joint, side(joint.a.body), side(joint.b.body), turn, of, wound(state, i)};
-  };
-  std::vector<std::size_t> on;  // joints whose ropes wind
-  for (std::size_t i = 0; i < model.joints.size(); ++i) {
-    const Joint<D>& joint = model.joints[i];
-    if (joint.kind != JointKind::pulley || (i < state.broken.size() && state.broken[i])) continue;
-    joint.each_body([&](int body) {
-      if (body >= 0) all[std::size_t(body)] = body_motion(state, body);
-    });
-    const JointPose<D> at = pose(i, all);
-    bool ends = comes_to_its_end(at, h);
-    if constexpr (D == 2) {
-      if (winds(joint)) {
-        const auto now = on_wheels(at, h);
-        ends = ends || !now || (!begun.empty() && met_rims(pose(i, begun), at, done));
-        if (now) state.wound[i] = *now;
-        on.push_back(i);
-      }
-    }
-    if (ends && !ended) ended = EndOfRope{int(i)};
-  }
-  if constexpr (D == 2) {
-    for (std::size_t k = 0; k < on.size() && !ended; ++k) {
-      const JointPose<D> at = pose(on[k], all);
-      bool left = leaves(at);
-      // the pieces of a rope follow each other, from its first end or from its last
-      if (k > 0 && !left) {
-        const JointPose<D> before = pose(on[k - 1], all);
-        left = leaves(before, at) || leaves(at, before);
-      }
-      if (left) ended = EndOfRope{int(on[k]), true};
-    }
-  }
-  return ended;
 }
 
 namespace {
@@ -221,6 +169,7 @@ void join_as(Joint<D>& joint, const Made<D>& so) {
 
 template const JointEquations<2>& equations<2>(JointKind);
 template AngularVec<2> turn_between<2>(const Joint<2>&, const State<2>&);
+template AngularVec<2> turn_between<2>(const Joint<2>&, std::size_t, const State<2>&);
 template int rows<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&, const JointTurn<2>&,
                      Row<2>*, double*, std::span<const BodyMotion<2>>);
 template int rows<2>(const Joint<2>&, std::size_t, const State<2>&, std::span<const BodyMotion<2>>, Row<2>*,
@@ -230,10 +179,9 @@ template bool free_row<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotio
 template Wrench<2> load_on_a<2>(const Joint<2>&, const Row<2>&, const BodyMotion<2>&, const BodyMotion<2>&);
 template Wrench<2> coil_load<2>(const Joint<2>&, const BodyMotion<2>&, const BodyMotion<2>&,
                                 const JointTurn<2>&);
-template std::optional<EndOfRope> follow_ropes<2>(const Model<2>&, State<2>&, std::span<const BodyMotion<2>>,
-                                                  double);
 template const JointEquations<3>& equations<3>(JointKind);
 template AngularVec<3> turn_between<3>(const Joint<3>&, const State<3>&);
+template AngularVec<3> turn_between<3>(const Joint<3>&, std::size_t, const State<3>&);
 template int rows<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&, const JointTurn<3>&,
                      Row<3>*, double*, std::span<const BodyMotion<3>>);
 template int rows<3>(const Joint<3>&, std::size_t, const State<3>&, std::span<const BodyMotion<3>>, Row<3>*,
@@ -243,8 +191,6 @@ template bool free_row<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotio
 template Wrench<3> load_on_a<3>(const Joint<3>&, const Row<3>&, const BodyMotion<3>&, const BodyMotion<3>&);
 template Wrench<3> coil_load<3>(const Joint<3>&, const BodyMotion<3>&, const BodyMotion<3>&,
                                 const JointTurn<3>&);
-template std::optional<EndOfRope> follow_ropes<3>(const Model<3>&, State<3>&, std::span<const BodyMotion<3>>,
-                                                  double);
 
 template Made<2> as_it_stands<2>(const Joint<2>&, const State<2>&, std::size_t);
 template Made<3> as_it_stands<3>(const Joint<3>&, const State<3>&, std::size_t);

@@ -98,8 +98,11 @@ int rows(const Joint<D>& joint, const BodyMotion<D>& a, const BodyMotion<D>& b,
 /// Its relative angle in a state, Joint::turn_between().
 template <int D>
 AngularVec<D> turn_between(const Joint<D>& joint, const State<D>& state);
+/// The same of one of the model, by its number, with the pieces of its rope that are one with it.
+template <int D>
+AngularVec<D> turn_between(const Joint<D>& joint, std::size_t number, const State<D>& state);
 
-/// The same of a joint, by its number, of the model of a state. `at`: pose and velocity of every body, or of
+/// rows() of a joint, by its number, of the model of a state. `at`: pose and velocity of every body, or of
 /// its bodies, by number.
 template <int D>
 int rows(const Joint<D>& joint, std::size_t number, const State<D>& state,
@@ -136,21 +139,52 @@ Wound wound(const State<D>& state, std::size_t joint) {
   return joint < state.wound.size() ? state.wound[joint] : Wound{};
 }
 
-/// A joint whose rope cannot go on, and whether that is as it has left a wheel.
+/// Whether a joint holds nothing, as its piece of a rope is one with one before it.
+template <int D>
+bool one_with_another(const State<D>& state, std::size_t joint) {
+  return wound(state, joint).with < 0;
+}
+
+/// act(body) for each body that a joint of a model holds, with the pieces of its rope that are one with it.
+template <int D, class Act>
+void each_body_held(const Joint<D>& joint, const Wound& rope, Act&& act) {
+  for (int k = 0; k <= std::max(0, rope.with); ++k) (&joint)[k].each_body(act);
+}
+template <int D, class Act>
+void each_body_held(const Model<D>& model, const State<D>& state, std::size_t joint, Act&& act) {
+  each_body_held(model.joints[joint], wound(state, joint), act);
+}
+
+/// Joint::turn_between() of a joint of a model, with those.
+template <int D, class Rounds>
+AngularVec<D> turn_between(const Joint<D>& joint, const Wound& rope, Rounds&& rounds) {
+  AngularVec<D> sum = joint.turn_between(rounds);
+  for (int k = 1; k <= rope.with; ++k) sum += (&joint)[k].turn_between(rounds);
+  return sum;
+}
+
+/// A joint whose rope cannot go on, and whether that is as it comes to the other side of a wheel that it has
+/// left.
 struct EndOfRope {
   int joint = 0;
-  bool left = false;
+  bool beyond = false;
 };
 
 /// Follows State::wound to where ropes are now, at the end of a step: from where they were by less than half
-/// a round. Returns the first joint whose rope cannot go on: it will have no straight piece left within the
-/// next step, as its end comes to the rim of a wheel, or is tight and comes to a point that it runs over; or
-/// its end was on a rim since its bodies stood as in `begun`, by number, `done` s ago; or it is tight and has
-/// left a wheel.
+/// a round; they leave wheels that they are straight at, and come back to them. Returns the first joint whose
+/// rope cannot go on: it will have no straight piece left within the next step, as its end comes to the rim
+/// of a wheel, or is tight and comes to a point that it runs over; or its end was on a rim since its bodies
+/// stood as in `begun`, by number, `done` s ago; or it is tight and comes to the other side of a wheel that
+/// it has left.
 template <int D>
 std::optional<EndOfRope> follow_ropes(const Model<D>& model, State<D>& state,
                                       std::type_identity_t<std::span<const BodyMotion<D>>> begun = {},
                                       double done = 0);
+
+/// When the first rope will leave a wheel, or come back to one, if its bodies go straight on: s from now,
+/// within `most`. None where that is so soon that follow_ropes() has it do so already.
+template <int D>
+std::optional<double> wheel_time(const Model<D>& model, const State<D>& state, double most);
 
 /// What breaks with what is broken: all pulleys of one rope, and a gear with either of its joints.
 template <int D>

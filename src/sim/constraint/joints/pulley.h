@@ -16,6 +16,10 @@
 //   J_d v = (J_first - J_last) v / 2            of the free pieces at a and b: half the slip, in m/s
 //   |drag| <= mu_e f,   mu_e = 2 tanh(mu wrap / 2)      so that the greater tension is at most e^(mu wrap)
 //                                                       times the lesser; against the slip where it slips
+// Where its wrap around a wheel falls to zero the rope leaves that, and goes straight on until it comes back:
+//   wrap = s (phi_out - phi_in),   s = 1 to the left, -1 to the right
+// There both ways are one line, so C and J go on; wheels_left.cpp follows it. Pieces of a rope with a wheel
+// between them are then one, whose C is the sum of theirs, in which the wheel's turn does not count.
 // free: all, until it is tight. Its force is the tension, shown as that on a. Breaks by it.
 // Source: Featherstone, Rigid Body Dynamics Algorithms (2008), §8, as a sum of distance constraints; the
 // friction is Euler's and Eytelwein's of a belt.
@@ -63,26 +67,6 @@ inline double angle_between(const Vec<2>& from, const Vec<2>& to, double near) {
   return angle + kRound * std::round((near - angle) / kRound);
 }
 
-/// The first place of a rope, or the last, and the place next to it; how far their wheels offset the piece
-/// between.
-struct RopeEnd {
-  Vec<2> from, to;
-  double offset = 0;
-  Vec<2> rate;  // of to - from, m/s
-};
-inline RopeEnd rope_end(const JointPose<2>& at, bool first) {
-  const Joint<2>& joint = at.joint;
-  const bool lone = joint.over.empty();
-  const End<2>&from = first || lone ? joint.a : joint.over.back(),
-        &to = !first || lone ? joint.b : joint.over.front();
-  const BodyMotion<2>&p = at.side(from.body), &q = at.side(to.body);
-  const Vec<2> arm_p = p.arm(from.local), arm_q = q.arm(to.local);
-  const auto inner = [&](std::size_t i) { return i < joint.around.size() ? joint.around[i] : 0; };
-  const double on_a = first || lone ? joint.on_a.offset : inner(joint.over.size() - 1),
-               on_b = !first || lone ? joint.on_b.offset : inner(0);
-  return {p.x + arm_p, q.x + arm_q, on_a - on_b, q.velocity(arm_q) - p.velocity(arm_p)};
-}
-
 /// Whether a piece between two places, `u` apart and offset by q, will have next to no length left within a
 /// time h: on the straight way from here, least of
 ///   l^2 = (u + u' s)^2 - q^2        0 <= s <= h
@@ -97,78 +81,44 @@ bool runs_out(const Vec<D>& u, const Vec<D>& rate, double q, double h) {
   return least2 <= kPart * kPart * h * h * speed2;
 }
 
-/// The same of an end on a wheel: or it turns by more than a radian in that time, as it is so short.
-inline bool runs_out(const RopeEnd& end, const RopePiece<2>& piece, double h) {
-  if (!(piece.length > 0) || runs_out<2>(end.to - end.from, end.rate, end.offset, h)) return true;
-  const double across = piece.direction[0] * end.rate[1] - piece.direction[1] * end.rate[0];
-  return h * std::fabs(across) > piece.length;
-}
-
-/// Whether the rope has a wheel at that end.
-inline bool on_wheel(const Joint<2>& joint, bool first) {
-  const std::vector<double>& around = joint.around;
-  return (first ? joint.on_a : joint.on_b).offset != 0 ||
-         (!around.empty() && (first ? around.front() : around.back()) != 0);
-}
-
-/// Whether an end was on the rim of its wheel on its way, of h s, between how it began and how it ended:
-///   |u| < |q|    on the cubic that both places and speeds give
-inline bool met_rim(const RopeEnd& begun, const RopeEnd& ended, double h) {
-  constexpr int kLooks = 16;
-  const Vec<2> u = begun.to - begun.from, w = ended.to - ended.from;
-  for (int i = 1; i < kLooks; ++i) {
-    const double s = double(i) / kLooks, left = 1 - s;
-    const Vec<2> there = left * left * ((1 + 2 * s) * u + s * h * begun.rate) +
-                         s * s * ((3 - 2 * s) * w - left * h * ended.rate);
-    if (there.squaredNorm() < ended.offset * ended.offset) return true;
-  }
-  return false;
-}
-
-/// The same of either end of a rope.
-inline bool met_rims(const JointPose<2>& begun, const JointPose<2>& ended, double h) {
-  return (on_wheel(begun.joint, true) && met_rim(rope_end(begun, true), rope_end(ended, true), h)) ||
-         (on_wheel(begun.joint, false) && met_rim(rope_end(begun, false), rope_end(ended, false), h));
-}
-
-/// Where the rope is on its wheels, all rounds counted; none where a piece at them runs out within a time h,
-/// s.
-inline std::optional<Wound> on_wheels(const JointPose<2>& at, double h) {
-  Wound now = at.wound;
-  for (const bool first : {true, false}) {
-    const Winding<2>& wheel = first ? at.joint.on_a : at.joint.on_b;
-    if (!on_wheel(at.joint, first)) continue;
-    const RopeEnd end = rope_end(at, first);
-    const RopePiece<2> piece = rope_piece<2>(end.from, end.to, end.offset);
-    if (runs_out(end, piece, h)) return {};
-    double& angle = first ? now.a : now.b;
-    angle = angle_between(wheel.start, piece.direction, angle);
-  }
-  return now;
-}
-
 /// How far a rope that comes to a wheel by one direction and leaves it by another is wrapped around it, rad,
-/// less than a round. `offset`: Winding::offset.
+/// less than a round; none where it is straight but for rounding. `offset`: Winding::offset.
 inline double wrap_between(const Vec<2>& before, const Vec<2>& after, double offset) {
   const double turn = (offset > 0 ? 1 : -1) * angle_between(before, after);
-  return turn < 0 ? turn + 2 * std::numbers::pi : turn;
+  constexpr double kRounding = 1e-12;
+  return turn < -kRounding ? turn + 2 * std::numbers::pi : std::max(0.0, turn);
 }
 
-/// The places of a rope in their order, from a to b, with what it runs over between them.
+/// The last of the pieces of a rope that are one with a joint of a model, itself where there are no others.
+template <int D>
+const Joint<D>& last_piece(const JointPose<D>& at) {
+  return (&at.joint)[std::max(0, at.wound.with)];
+}
+
+/// The places of a rope in their order, from a to b, with what it runs over between them, but for wheels that
+/// it has left.
 template <int D>
 class RopePlaces {
  public:
-  explicit RopePlaces(const JointPose<D>& at) : at_(at) {}
+  explicit RopePlaces(const JointPose<D>& at)
+      : at_(at), last_(&last_piece(at)), size_(2 - at.wound.off_a - at.wound.off_b) {
+    for (const Joint<D>* piece = &at.joint; piece <= last_; ++piece) size_ += int(piece->over.size());
+  }
 
-  int size() const { return int(at_.joint.over.size()) + 2; }
+  int size() const { return size_; }
   const End<D>& end(int i) const {
-    return i == 0 ? at_.joint.a : i + 1 == size() ? at_.joint.b : at_.joint.over[std::size_t(i - 1)];
+    if (i == 0) return at_.joint.a;
+    if (i + 1 == size_) return last_->b;
+    std::size_t k = std::size_t(i - 1 + at_.wound.off_a);
+    const Joint<D>* piece = &at_.joint;
+    for (; k >= piece->over.size(); ++piece) k -= piece->over.size();
+    return piece->over[k];
   }
   /// As Winding::offset, m.
   double offset(int i) const {
     if (i == 0) return at_.joint.on_a.offset;
-    if (i + 1 == size()) return at_.joint.on_b.offset;
-    return at_.joint.around.empty() ? 0 : at_.joint.around[std::size_t(i - 1)];
+    if (i + 1 == size_) return last_->on_b.offset;
+    return at_.joint.around.empty() ? 0 : at_.joint.around[std::size_t(i - 1 + at_.wound.off_a)];
   }
   /// The straight piece from place i to the next.
   RopePiece<D> piece(int i) const {
@@ -206,10 +156,163 @@ class RopePlaces {
 
  private:
   const JointPose<D>& at_;
+  const Joint<D>* last_;
+  int size_;
 };
+
+/// The first place of a rope, or the last, and the place next to it; how far their wheels offset the piece
+/// between.
+struct RopeEnd {
+  Vec<2> from, to;
+  double offset = 0;
+  Vec<2> rate;  // of to - from, m/s
+};
+inline RopeEnd rope_end(const JointPose<2>& at, bool first) {
+  const RopePlaces<2> places(at);
+  const int i = first ? 0 : places.size() - 2;
+  const End<2>&from = places.end(i), &to = places.end(i + 1);
+  const BodyMotion<2>&p = at.side(from.body), &q = at.side(to.body);
+  const Vec<2> arm_p = p.arm(from.local), arm_q = q.arm(to.local);
+  return {p.x + arm_p, q.x + arm_q, places.offset(i) - places.offset(i + 1),
+          q.velocity(arm_q) - p.velocity(arm_p)};
+}
+
+/// The same of an end on a wheel: or it turns by more than a radian in that time, as it is so short.
+inline bool runs_out(const RopeEnd& end, const RopePiece<2>& piece, double h) {
+  if (!(piece.length > 0) || runs_out<2>(end.to - end.from, end.rate, end.offset, h)) return true;
+  const double across = piece.direction[0] * end.rate[1] - piece.direction[1] * end.rate[0];
+  return h * std::fabs(across) > piece.length;
+}
+
+/// Whether the rope has a wheel at that end.
+inline bool on_wheel(const JointPose<2>& at, bool first) {
+  if (at.joint.around.empty()) return (first ? at.joint.on_a : last_piece(at).on_b).offset != 0;
+  const RopePlaces<2> places(at);
+  return places.offset(first ? 1 : places.size() - 2) != 0;
+}
+
+/// Whether an end was on the rim of its wheel on its way, of h s, between how it began and how it ended:
+///   |u| < |q|    on the cubic that both places and speeds give
+inline bool met_rim(const RopeEnd& begun, const RopeEnd& ended, double h) {
+  constexpr int kLooks = 16;
+  const Vec<2> u = begun.to - begun.from, w = ended.to - ended.from;
+  for (int i = 1; i < kLooks; ++i) {
+    const double s = double(i) / kLooks, left = 1 - s;
+    const Vec<2> there = left * left * ((1 + 2 * s) * u + s * h * begun.rate) +
+                         s * s * ((3 - 2 * s) * w - left * h * ended.rate);
+    if (there.squaredNorm() < ended.offset * ended.offset) return true;
+  }
+  return false;
+}
+
+/// The same of either end of a rope.
+inline bool met_rims(const JointPose<2>& begun, const JointPose<2>& ended, double h) {
+  return (on_wheel(begun, true) && met_rim(rope_end(begun, true), rope_end(ended, true), h)) ||
+         (on_wheel(begun, false) && met_rim(rope_end(begun, false), rope_end(ended, false), h));
+}
+
+/// Where the rope is on its wheels, all rounds counted; none where a piece at them runs out within a time h,
+/// s.
+inline std::optional<Wound> on_wheels(const JointPose<2>& at, double h) {
+  Wound now = at.wound;
+  for (const bool first : {true, false}) {
+    const Winding<2>& wheel = first ? at.joint.on_a : last_piece(at).on_b;
+    if (!on_wheel(at, first)) continue;
+    const RopeEnd end = rope_end(at, first);
+    const RopePiece<2> piece = rope_piece<2>(end.from, end.to, end.offset);
+    if (runs_out(end, piece, h)) return {};
+    double& angle = first ? now.a : now.b;
+    angle = angle_between(wheel.start, piece.direction, angle);
+  }
+  return now;
+}
+
+/// How far a rope with friction turns to the left at wheel k of Joint::around at the start, all rounds
+/// counted, rad.
+inline double turn_at_start(const Joint<2>& joint, std::size_t k) {
+  return (joint.around[k] > 0 ? 1 : -1) * joint.wraps[k];
+}
+
+/// How far a rope with friction is wrapped around wheel k of Joint::around, rad, all rounds counted, as its
+/// ends are turned by `now`. Of a wheel that it is on, and that is the first or the last such: between others
+/// nothing moves.
+inline double wrap_at(const Joint<2>& joint, const Wound& now, std::size_t k) {
+  const std::size_t first = std::size_t(now.off_a), last = joint.around.size() - 1 - std::size_t(now.off_b);
+  const double sign = joint.around[k] > 0 ? 1 : -1;
+  const auto turns = [&](std::size_t from, std::size_t to) {
+    double sum = 0;
+    for (std::size_t i = from; i <= to; ++i) sum += joint.around[i] == 0 ? 0 : turn_at_start(joint, i);
+    return sum;
+  };
+  if (k == first && k == last) return sign * (turns(0, joint.around.size() - 1) + now.b - now.a);
+  if (k == first) return sign * (turns(0, k) - now.a);
+  if (k == last) return sign * (turns(k, joint.around.size() - 1) + now.b);
+  return joint.wraps[k];
+}
+
+/// Wound with the angles of the rope's ends as they are now, near to those known.
+inline Wound turned_ends(const JointPose<2>& at) {
+  Wound now = at.wound;
+  for (const bool first : {true, false}) {
+    if (!on_wheel(at, first)) continue;
+    const RopeEnd end = rope_end(at, first);
+    double& angle = first ? now.a : now.b;
+    angle = angle_between((first ? at.joint.on_a : last_piece(at).on_b).start,
+                          rope_piece<2>(end.from, end.to, end.offset).direction, angle);
+  }
+  return now;
+}
+
+/// How far a rope is wrapped around the wheel between two pieces of it that wind on it, rad. It ends where
+/// the other begins.
+inline double wrap_between(const JointPose<2>& before, const JointPose<2>& after) {
+  const Winding<2>& wheel = last_piece(before).on_b;
+  const double sign = wheel.offset > 0 ? 1 : -1;
+  return wrap_between(wheel.start, after.joint.on_a.start, wheel.offset) +
+         sign * (after.wound.a - before.wound.b);
+}
+
+/// hold_rope() of one that has left wheels:
+///   C = L + sum r wrap_0 - sum l - sum r wrap       r wrap_0 of all wheels, r wrap of those that it is on
+/// where of wheels at its ends, with which it does not slip, the arcs are counted from the start as there.
+inline void hold_rope_off_wheels(const JointPose<2>& at, Row<2>* J, double* C) {
+  J[0] = {}, C[0] = 0;
+  if (at.wound.with < 0) return;
+  const RopePlaces<2> places(at);
+  const Joint<2>&joint = at.joint, &last = last_piece(at);
+  double left = at.turn[0];
+  for (const Joint<2>* piece = &joint; piece <= &last; ++piece) {
+    left += piece->length - piece->turn[0];
+    if (piece != &last)
+      left += std::fabs(piece->on_b.offset) *
+              wrap_between(piece->on_b.start, piece[1].on_a.start, piece->on_b.offset);
+  }
+  if (joint.turns.empty()) left -= at.turn[0] - joint.turn[0];
+  const std::size_t n = joint.around.size();
+  const Wound now = turned_ends(at);
+  for (std::size_t k = 0; k < n; ++k) {
+    if (joint.around[k] == 0) continue;
+    const bool on = k >= std::size_t(at.wound.off_a) && k + std::size_t(at.wound.off_b) < n;
+    left += std::fabs(joint.around[k]) * (joint.wraps[k] - (on ? wrap_at(joint, now, k) : 0));
+  }
+  for (int i = 0; i + 1 < places.size(); ++i) {
+    const RopePiece<2> piece = places.piece(i);
+    left -= piece.length;
+    places.add(i, piece, 1, J[0]);
+    if (i == 0 && joint.on_a.offset != 0)
+      left -= joint.on_a.offset * angle_between(joint.on_a.start, piece.direction, at.wound.a);
+    if (i + 2 == places.size() && last.on_b.offset != 0)
+      left += last.on_b.offset * angle_between(last.on_b.start, piece.direction, at.wound.b);
+  }
+  C[0] = left + at.wound.given;
+}
 
 template <int D>
 void hold_rope(const JointPose<D>& at, Row<D>* J, double* C) {
+  if constexpr (D == 2) {
+    if (at.wound.with != 0 || at.wound.off_a != 0 || at.wound.off_b != 0)
+      return hold_rope_off_wheels(at, J, C);
+  }
   const Joint<D>& joint = at.joint;
   Row<D> row;
   const RopePlaces<D> places(at);
@@ -227,7 +330,7 @@ void hold_rope(const JointPose<D>& at, Row<D>* J, double* C) {
         free -= last * angle_between(joint.on_b.start, piece.direction, at.wound.b);
     }
   }
-  C[0] = joint.length - free;
+  C[0] = joint.length + at.wound.given - free;
   if constexpr (D == 2) {
     if (!joint.turns.empty()) C[0] += (at.turn - joint.turn)[0];
   }
@@ -258,6 +361,11 @@ template <int D>
 bool rubs(const Joint<D>& joint) {
   return joint.kind == JointKind::pulley && joint.friction > 0;
 }
+/// Whether it does as it is now: it may have left all of them.
+template <int D>
+bool rubs(const Joint<D>& joint, const Wound& now) {
+  return rubs(joint) && std::size_t(now.off_a) + std::size_t(now.off_b) < joint.over.size();
+}
 
 /// How far a rope with friction is wrapped around all that it slides over, rad, at least 0.
 template <int D>
@@ -265,7 +373,8 @@ double rope_wrap(const JointPose<D>& at) {
   const Joint<D>& joint = at.joint;
   const RopePlaces<D> places(at);
   const int points = places.size();
-  double wrap = joint.wrap;
+  const bool left = at.wound.off_a != 0 || at.wound.off_b != 0;
+  double wrap = left ? 0 : joint.wrap;
   Vec<D> before = places.piece(0).direction;
   const Vec<D> first = before;
   for (int i = 1; i + 1 < points; ++i) {
@@ -275,40 +384,15 @@ double rope_wrap(const JointPose<D>& at) {
     before = after;
   }
   if constexpr (D == 2) {
+    const Wound now = left ? turned_ends(at) : at.wound;
+    for (int i = 1; left && i + 1 < points; ++i)
+      if (places.offset(i) != 0) wrap += wrap_at(joint, now, std::size_t(i - 1 + at.wound.off_a));
+    if (left) return std::max(0.0, wrap);
     const auto sign = [](double q) { return q > 0 ? 1.0 : q < 0 ? -1.0 : 0.0; };
     wrap -= sign(joint.around.front()) * angle_between(joint.on_a.start, first, at.wound.a);
     wrap += sign(joint.around.back()) * angle_between(joint.on_b.start, before, at.wound.b);
   }
   return std::max(0.0, wrap);
-}
-
-/// The least that a rope with friction is wrapped around a wheel at its ends, rad: below zero it has left
-/// that.
-inline double least_wrap(const JointPose<2>& at) {
-  const Joint<2>& joint = at.joint;
-  const RopePlaces<2> places(at);
-  const int last = int(joint.around.size()) - 1;
-  double least = std::numeric_limits<double>::infinity();
-  for (const int k : {0, last}) {
-    const double offset = joint.around[std::size_t(k)];
-    if (offset == 0) continue;
-    const double sign = offset > 0 ? 1 : -1;
-    double wrap = 2 * std::numbers::pi * joint.whole_turns +
-                  wrap_between(k == 0 ? joint.on_a.start : places.piece(k).direction,
-                               k == last ? joint.on_b.start : places.piece(k + 1).direction, offset);
-    if (k == 0) wrap -= sign * at.wound.a;
-    if (k == last) wrap += sign * at.wound.b;
-    least = std::min(least, wrap);
-  }
-  return least;
-}
-
-/// How far a rope is wrapped around the wheel between two pieces of it that wind on it, rad. It ends where
-/// the other begins.
-inline double wrap_between(const JointPose<2>& before, const JointPose<2>& after) {
-  const double offset = before.joint.on_b.offset, sign = offset > 0 ? 1 : -1;
-  return wrap_between(before.joint.on_b.start, after.joint.on_a.start, offset) +
-         sign * (after.wound.a - before.wound.b);
 }
 
 /// The row of the drag of a rope with friction; its force is the tension at a less that at b, N. Returns

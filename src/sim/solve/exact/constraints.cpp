@@ -56,8 +56,8 @@ AngularVec<D> ExactSolver<D>::rounds_of(const State<D>& state, int body) const {
 
 template <int D>
 JointTurn<D> ExactSolver<D>::turn_between(const State<D>& state, const Joint<D>& joint) const {
-  return {joint.turn_between([&](int body) { return rounds_of(state, body); }),
-          wound(state, std::size_t(&joint - model_.joints.data()))};
+  const Wound rope = wound(state, std::size_t(&joint - model_.joints.data()));
+  return {sim::turn_between(joint, rope, [&](int body) { return rounds_of(state, body); }), rope};
 }
 
 // the turn that the rows of a constraint are of; a contact's have none
@@ -148,7 +148,7 @@ void ExactSolver<D>::collect_constraints(const State<D>& state, double fastest, 
   };
   const auto add = [&](Kind kind, int of, const JointTurn<D>& turn, bool one_sided) {
     Constraint constraint{};
-    constraint.kind = kind, constraint.of = of;
+    constraint.kind = kind, constraint.of = of, constraint.rope = turn.wound;
     build_jacobian(constraint, turn);
     const double speed = one_sided ? in_metres(constraint.first, row_velocity(constraint.first)) : 0;
     const bool comes = kind == Kind::contact && speed > -kComing * limits_.rest_speed;
@@ -164,10 +164,10 @@ void ExactSolver<D>::collect_constraints(const State<D>& state, double fastest, 
   };
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
-    if (state.broken[i] || !moves(joint)) continue;
+    if (!holds_any(state, i)) continue;
     const JointTurn<D> turn = turn_between(state, joint);
     if (!joint.linked) add(one_sided(joint) ? Kind::rope : Kind::joint, i, turn, one_sided(joint));
-    if (rubs(joint) && !constraints_.empty() && constraints_.back().kind == Kind::rope &&
+    if (rubs(joint, turn.wound) && !constraints_.empty() && constraints_.back().kind == Kind::rope &&
         constraints_.back().of == i)
       add(Kind::friction, i, turn, false);
     if (!has_free_row(joint)) continue;

@@ -341,7 +341,7 @@ double ExactSolver<D>::breaking_time(const State<D>& state, Couple& which) const
   double first = kNever;
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
-    if (!(joint.breaks < 1e299 || joint.breaks_torque < 1e299) || state.broken[i] || !moves(joint)) continue;
+    if (!(joint.breaks < 1e299 || joint.breaks_torque < 1e299) || !holds_any(state, i)) continue;
     const Wrench<D>& at_begin = outcome_.joint_loads[i];
     Wrench<D> at_end = load_of_coil(state, i);
     for (const Constraint& constraint : constraints_) {
@@ -412,7 +412,8 @@ JointTurn<D> ExactSolver<D>::turn_between_at(const State<D>& state, const Joint<
     return rounds<D>(sim::between<D>(interval_.begun.turn[k], interval_.begun.spin[k], state.turn[k],
                                      state.spin[k], h, part));
   };
-  return {joint.turn_between(at), wound(state, std::size_t(&joint - model_.joints.data()))};
+  const Wound rope = wound(state, std::size_t(&joint - model_.joints.data()));
+  return {sim::turn_between(joint, rope, at), rope};
 }
 
 // ropes that become tight and limits that are met
@@ -428,7 +429,7 @@ double ExactSolver<D>::tightening_time(const State<D>& state, double h, Couple& 
     constraint.kind = kind, constraint.of = joint;
     const std::size_t rows = rows_.size();
     const auto left = [&](double part) {
-      model_.joints[joint].each_body([&](int body) {
+      each_body_held(model_, state, std::size_t(joint), [&](int body) {
         if (shifts(body)) poses_[body] = pose_at(state, body, h, part);
       });
       build_jacobian(constraint, turn_between_at(state, model_.joints[joint], h, part));
@@ -455,13 +456,13 @@ double ExactSolver<D>::tightening_time(const State<D>& state, double h, Couple& 
       }
     }
     if (first < before) which = {model_.joints[joint].a.body, model_.joints[joint].b.body};
-    model_.joints[joint].each_body([&](int body) {
+    each_body_held(model_, state, std::size_t(joint), [&](int body) {
       if (shifts(body)) poses_[body] = end_pose(state, body);
     });
   };
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
-    if (state.broken[i] || !moves(joint)) continue;
+    if (!holds_any(state, i)) continue;
     if (one_sided(joint)) look(Kind::rope, i);
     if (!has_free_row(joint)) continue;
     if (joint.lower > -1e299) look(Kind::lower, i);

@@ -202,7 +202,7 @@ void ExactSolver<D>::advance(StepPart<D> step) {
   // a row, through which a blow goes, one more each time. Groups only grow, so it comes to an end.
   bool any = true;
   for (int round = 0; any; ++round) {
-    join_near_bodies();
+    join_near_bodies(state);
     any = false;
     list_groups(state);
     for (const Group& group : step_.groups) {
@@ -456,7 +456,8 @@ void ExactSolver<D>::rates(double t, std::span<const double> d, std::span<const 
     poses_[std::size_t(drives_.body(i))] = driven_[std::size_t(i)].at;
   }
   rows_.clear();
-  for (Constraint& constraint : constraints_) build_jacobian(constraint, AngularVec<D>::Zero());
+  for (Constraint& constraint : constraints_)
+    build_jacobian(constraint, {AngularVec<D>(AngularVec<D>::Zero()), constraint.rope});
   chain_response_.build(rows_, response_, dynamics_.chains());
   b_.resize(Eigen::Index(rows_.size()));
   for (int i = 0; i < int(rows_.size()); ++i) b_[i] = row_acceleration(i, v_rate) + rows_[i].velocity_product;

@@ -62,6 +62,7 @@ class ExactSolver final : public ContactSolver<D>, private System {
     int block = 0;              // in blocks_, its first
     double off = 0;             // of a gap or limit: the distance left, m or rad
     double offs[kMostHeld<D>];  // of a joint: the errors C of its rows
+    Wound rope;                 // of a rope: as State::wound
     // of a contact
     Vec<D> point = Vec<D>::Zero(), normal = Vec<D>::Zero();
     // of a sliding contact: the direction of its slip at the start of the interval, room's frame
@@ -252,12 +253,12 @@ class ExactSolver final : public ContactSolver<D>, private System {
 
   // groups.cpp
   void bound_travel(const State<D>& state, double t, double h);
-  void join_near_bodies();
+  void join_near_bodies(const State<D>& state);
   void list_groups(const State<D>& state);
   void classify_sets(const State<D>& state);
   void find_reached();
   void number_groups();
-  void list_members();
+  void list_members(const State<D>& state);
   void activate(const Group& group);
   void activate_all();
   void resize_for(State<D>& state);
@@ -274,6 +275,13 @@ class ExactSolver final : public ContactSolver<D>, private System {
   // whether a joint holds anything that moves by forces
   bool moves(const Joint<D>& joint) const {
     return joint.any_body([&](int body) { return response_.moves(body); });
+  }
+  // whether a joint of a state holds anything that moves
+  bool holds_any(const State<D>& state, int joint) const {
+    if (state.broken[std::size_t(joint)] || one_with_another(state, std::size_t(joint))) return false;
+    bool any = false;
+    each_body_held(model_, state, std::size_t(joint), [&](int body) { any = any || response_.moves(body); });
+    return any;
   }
   // a body of a row that moves by forces
   int mover(const Row<D>& row) const {

@@ -55,7 +55,8 @@ void ExactSolver<D>::record_forces(const State<D>& state) {
   outcome_.contacts.clear(), progress_.known = &outcome_.contacts;
   // one that has broken in this step is shown with what broke it
   for (const int i : active_.joints) {
-    if (!moves(model_.joints[i]) || state.broken[i] != step_.broken[i]) continue;
+    const bool holds = moves(model_.joints[i]) || holds_any(state, i);
+    if (!holds || state.broken[i] != step_.broken[i]) continue;
     outcome_.joint_loads[i] = {};
     if (limits_.rubs) outcome_.drags[std::size_t(i)] = 0;
   }
@@ -144,7 +145,7 @@ bool ExactSolver<D>::break_loaded(State<D>& state, double done) {
   for (const int i : active_.joints) {
     const Joint<D>& joint = model_.joints[i];
     if (model_.collision != Collision::event) break;
-    if (state.broken[i] || !moves(joint) || !overloaded(joint, outcome_.joint_loads[i])) continue;
+    if (!holds_any(state, int(i)) || !overloaded(joint, outcome_.joint_loads[i])) continue;
     state.broken[i] = 1;
     joint.each_body([&](int body) {
       if (body >= 0) scratch_.unheld.push_back(body);

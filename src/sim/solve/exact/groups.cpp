@@ -61,7 +61,7 @@ void ExactSolver<D>::bound_travel(const State<D>& state, double t, double h) {
 
 // step_.near: which bodies may meet, or are tied together
 template <int D>
-void ExactSolver<D>::join_near_bodies() {
+void ExactSolver<D>::join_near_bodies(const State<D>& state) {
   step_.near.reset(limits_.bodies);
   for (int body = 0; body < int(step_.travel_bound.size()); ++body)
     step_.travel_bound[body] = std::max(step_.travel_bound[body], step_.travelled[body]);
@@ -81,10 +81,10 @@ void ExactSolver<D>::join_near_bodies() {
     if (step_.broken[i]) continue;
     const Joint<D>& joint = model_.joints[i];
     link(joint.a.body, joint.b.body);
-    if (joint.over.empty()) continue;
+    if (joint.over.empty() && wound(state, std::size_t(i)).with <= 0) continue;
     // of many bodies: all that are free with the first of them
     int free = -1;
-    joint.each_body([&](int body) {
+    each_body_held(model_, state, std::size_t(i), [&](int body) {
       if (body < 0 || model_.bodies[body].fixed) return;
       if (free >= 0) link(free, body);
       free = body;
@@ -104,7 +104,7 @@ template <int D>
 void ExactSolver<D>::list_groups(const State<D>& state) {
   classify_sets(state);
   number_groups();
-  list_members();
+  list_members(state);
 }
 
 // kind and size of each set, at its root: asleep sets, in which no mouse holds a body, are left out; single
@@ -184,7 +184,7 @@ void ExactSolver<D>::number_groups() {
 
 // the members of each group
 template <int D>
-void ExactSolver<D>::list_members() {
+void ExactSolver<D>::list_members(const State<D>& state) {
   const int groups = int(step_.groups.size());
   const auto lay = [&](auto& list, int count, const auto& group_of, const auto& item, const auto& give) {
     by_group(groups, count, group_of, step_.group_ends, list, item);
@@ -213,7 +213,8 @@ void ExactSolver<D>::list_members() {
       step_.group_joints, int(model_.joints.size()),
       [&](int i) {
         int group = -1;
-        model_.joints[i].each_body([&](int body) { group = group < 0 ? either(body, -1) : group; });
+        each_body_held(model_, state, std::size_t(i),
+                       [&](int body) { group = group < 0 ? either(body, -1) : group; });
         return group;
       },
       self, [](Group& group, auto list) { group.joints = list; });
@@ -354,7 +355,7 @@ int ExactSolver<D>::cuts_so_far() const {
 
 #define OBSCURA_INSTANTIATE(D)                                                 \
   template void ExactSolver<D>::bound_travel(const State<D>&, double, double); \
-  template void ExactSolver<D>::join_near_bodies();                            \
+  template void ExactSolver<D>::join_near_bodies(const State<D>&);             \
   template void ExactSolver<D>::list_groups(const State<D>&);                  \
   template void ExactSolver<D>::activate(const Group&);                        \
   template void ExactSolver<D>::resize_for(State<D>&);                         \

@@ -64,8 +64,11 @@ void JointSolver<D>::prepare(State<D>& state) const {
 
 template <int D>
 void JointSolver<D>::gather(const State<D>& state) {
+  // pieces of a rope that became one, or two
+  bool same = wound_.size() == state.wound.size();
+  for (std::size_t i = 0; same && i < wound_.size(); ++i) same = wound_[i].with == state.wound[i].with;
   wound_ = state.wound;
-  if (planned_ && broken_ == state.broken && frozen_ == state.frozen) return;
+  if (planned_ && same && broken_ == state.broken && frozen_ == state.frozen) return;
   planned_ = true, broken_ = state.broken, frozen_ = state.frozen;
   for (int i = 0; i < int(model_.bodies.size()); ++i)
     response_.set(i, !model_.bodies[i].fixed && !state.frozen[i]);
@@ -90,10 +93,10 @@ void JointSolver<D>::plan() {
   std::vector<std::vector<int>> of(model_.bodies.size());  // blocks of each body that moves
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     const Joint<D>& joint = model_.joints[i];
-    if (broken_[i] || !moves(joint)) continue;
+    if (broken_[i] || !holds_any(i)) continue;
     Row<D> out[kMostHeld<D>];
     double off[kMostHeld<D>];
-    joint.each_body([&](int body) {
+    each_body_held(joint, wound_of(std::size_t(i)), [&](int body) {
       if (response_.moves(body)) of[body].push_back(int(held_.size()));
     });
     const int block = int(held_.size());
@@ -146,19 +149,19 @@ void JointSolver<D>::plan() {
   floating_.assign(std::size_t(components()), 1);
   for (int k = 0; k < int(held_.size()); ++k) {
     const Joint<D>& joint = model_.joints[std::size_t(held_[std::size_t(k)])];
-    if (!joint.over.empty() || joint.geared || !response_.moves(joint.a.body) ||
-        !response_.moves(joint.b.body))
+    if (!joint.over.empty() || joint.geared || wound_of(std::size_t(held_[std::size_t(k)])).with > 0 ||
+        !response_.moves(joint.a.body) || !response_.moves(joint.b.body))
       floating_[std::size_t(factors_.component(k))] = 0;
   }
 }
 
 template <int D>
 JointTurn<D> JointSolver<D>::turn_between(const Joint<D>& joint) const {
-  const AngularVec<D> turn = joint.turn_between([&](int body) {
+  const Wound rope = wound_of(std::size_t(&joint - model_.joints.data()));
+  const AngularVec<D> turn = sim::turn_between(joint, rope, [&](int body) {
     return body < 0 ? AngularVec<D>(AngularVec<D>::Zero()) : AngularVec<D>(rounds<D>(turn_[body]));
   });
-  const auto number = std::size_t(&joint - model_.joints.data());
-  return {turn, number < wound_.size() ? wound_[number] : Wound{}};
+  return {turn, rope};
 }
 
 // M^-1 r p onto velocities
@@ -371,7 +374,7 @@ void JointSolver<D>::collect_bounded(double h) {
   };
   for (int i = 0; i < int(model_.joints.size()); ++i) {
     const Joint<D>& joint = model_.joints[i];
-    if (broken_[i] || !moves(joint)) continue;
+    if (broken_[i] || !holds_any(i)) continue;
     if (one_sided(joint)) add(i, upper);
     if (!has_free_row(joint)) continue;
     if (joint.lower > -1e299) add(i, lower);
@@ -544,9 +547,10 @@ void JointSolver<D>::iterate(int component, bool last) {
 template <int D>
 void JointSolver<D>::keep(State<D>& state, double h, const std::vector<char>* of) const {
   const auto wanted = [&](int i) {
-    const Joint<D>& joint = model_.joints[i];
-    if (!of) return moves(joint) || broken_[i] != 0;
-    return joint.any_body([&](int body) { return response_.moves(body) && (*of)[body] != 0; });
+    bool any = !of && broken_[i] != 0;
+    each_body_held(model_.joints[i], wound_of(std::size_t(i)),
+                   [&](int body) { any = any || (response_.moves(body) && (!of || (*of)[body] != 0)); });
+    return any;
   };
   const auto add = [&](int i, const Wrench<D>& load) {
     state.joint_forces[std::size_t(i)] += load.f, state.joint_torques[std::size_t(i)] += load.n;

@@ -279,6 +279,15 @@ class JointSolver final : public System {
   bool moves(const Joint<D>& joint) const {
     return joint.any_body([&](int body) { return response_.moves(body); });
   }
+  Wound wound_of(std::size_t joint) const { return joint < wound_.size() ? wound_[joint] : Wound{}; }
+  // the same with the pieces of a rope that are one with it; of one that is one with another nothing
+  bool holds_any(int joint) const {
+    const Wound rope = wound_of(std::size_t(joint));
+    bool any = false;
+    each_body_held(model_.joints[std::size_t(joint)], rope,
+                   [&](int body) { any = any || response_.moves(body); });
+    return any && rope.with >= 0;
+  }
   const BodyMotion<D>& side(int body) const { return body < 0 ? room_ : at_[body]; }
   double row_acceleration(const Row<D>& row, std::span<const double> v_rate) const;
   double given(const Row<D>& row) const;
