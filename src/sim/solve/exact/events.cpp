@@ -409,6 +409,8 @@ JointTurn<D> ExactSolver<D>::turn_between_at(const State<D>& state, const Joint<
     if (k < 0) return AngularVec<D>::Zero();
     if (const int drive = drives_.number(body); drive >= 0)
       return rounds<D>(drives_.at(drive, interval_.t + part * h).turn);
+    // of what stands still no beginning is kept
+    if (!response_.moves(body)) return rounds<D>(state.turn[k]);
     return rounds<D>(sim::between<D>(interval_.begun.turn[k], interval_.begun.spin[k], state.turn[k],
                                      state.spin[k], h, part));
   };
