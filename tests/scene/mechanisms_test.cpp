@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -12,6 +13,8 @@
 
 #include "scene/error.h"
 #include "scene/text_run.h"
+#include "sim/step/archive.h"
+#include "sim/step/stepper.h"
 
 namespace obscura::scene {
 namespace {
@@ -511,6 +514,82 @@ TEST(Pulley, ASlackRopeIsLiftedOffItsWheel) {
           EXPECT_EQ(now.joints.back().force.norm(), 0);
         }
       }
+    }
+  }
+}
+
+// Of saved words those that say which pieces of a rope are one are right for its wheels, or no state of it.
+TEST(Pulley, PiecesThatAreOneFollowEachOther) {
+  const Scene scene = parse(
+      "[room]\nsize = [8, 8]\nwalls = 'none'\n[[ball]]\nname = 'p'\nradius = 0.2\nposition = [3, 6]\nfixed = "
+      "true\n[[ball]]\nname = 'q'\nradius = 0.2\nposition = [5, 6]\nfixed = true\n[[particle]]\nname = "
+      "'a'\nposition = [2.5, 3]\n[[particle]]\nname = 'b'\nposition = [5.5, 3]\n[[joint]]\ntype = "
+      "'pulley'\nbetween = ['a', 'b']\nover = ['p', [4, 6.1], 'q']\n[[joint]]\ntype = 'pin'\nbetween = ['a', "
+      "'room']\n",
+      "a.toml");
+  const sim::Model<2>& model = scene.plane().model;
+  ASSERT_EQ(model.joints.size(), 4u);
+  sim::State<2> state = scene.plane().state;
+  sim::Stepper<2>(model).begin(state);
+  ASSERT_EQ(state.wound.size(), 4u);
+  const auto good = [&](std::array<int, 4> with) {
+    for (std::size_t i = 0; i < 4; ++i) state.wound[i].with = with[i];
+    return sim::fits(state, model);
+  };
+  EXPECT_TRUE(good({0, 0, 0, 0}));
+  EXPECT_TRUE(good({1, -1, 0, 0}));
+  EXPECT_TRUE(good({0, 1, -1, 0}));
+  EXPECT_TRUE(good({2, -1, -2, 0}));
+  EXPECT_FALSE(good({0, -1, -1, 0}));
+  EXPECT_FALSE(good({1, 0, 0, 0}));
+  EXPECT_FALSE(good({2, -1, -1, 0}));
+  EXPECT_FALSE(good({-1, 0, 0, 0}));
+  EXPECT_FALSE(good({0, 0, 1, -1}));
+  EXPECT_FALSE(good({0, 0, 0, 1}));
+  EXPECT_FALSE(good({0, 0, 0, -1}));
+}
+
+// A string that a moved ball has swung off its post wakes the box at its other end.
+TEST(Pulley, AStringThatHasLeftItsPostWakesWhatSleepsOnIt) {
+  for (const char* solver : {"direct", "iterative"}) {
+    const TextRun scene(
+        "duration = 8\n[room]\nsize = [20, 20]\ncorner = [-10, -10]\nwalls = 'ground'\n[physics]\nsolver = "
+        "'" +
+        std::string(solver) +
+        "'\nrate = 240\n[[ball]]\nname = 'post'\nradius = 0.3\nposition = [0, -6]\nfixed = "
+        "true\n[[ball]]\nname = "
+        "'carrier'\nradius = 0.1\nmotion = { path = [[0, -1, -3], [1, 1.5, -3.3], [5, 1.5, -3.3], [7, 1.5, "
+        "-0.5]] "
+        "}\n[[box]]\nname = 'box'\nsize = [0.5, 0.5]\nmass = 1\nposition = [0.3, -9.75]\n[[joint]]\nname = "
+        "'string'\ntype = 'pulley'\nbetween = ['carrier', 'box']\nover = ['post']\n[contact]\nignore = "
+        "[['carrier', "
+        "'post'], ['box', 'post']]\n");
+    const std::size_t box = number_of(scene, "box");
+    EXPECT_LT(scene.at(4.9).bodies[box].velocity.norm(), 1e-6) << solver;
+    EXPECT_GT(scene.at(6.9).bodies[box].position.y(), -9) << solver;
+  }
+}
+
+// A string that is joined where its ends are past its post runs straight between them: one of two equal bobs
+// pulls the other along with half of its speed.
+TEST(Pulley, AStringThatIsJoinedPastItsPostIsStraight) {
+  for (const Manner& manner : kManners) {
+    for (const double side : {-1, 1}) {
+      const TextRun scene(
+          plane_without_walls(manner, "gravity = [0, 0]") +
+          fmt::format("[[ball]]\nname = 'post'\nradius = 0.3\nposition = [0, 0]\nfixed = "
+                      "true\n[[particle]]\nname = 'a'\nmass = 1\nposition = [{0}, -1]\nvelocity = "
+                      "[{1}, 4]\n[[particle]]\nname = 'b'\nmass = 1\nposition = [{2}, -1]\nvelocity "
+                      "= [{3}, 4]\n[[joint]]\nname = 'string'\ntype = 'pulley'\nbetween = ['a', "
+                      "'b']\nover = ['post']\njoined = false\n[[when]]\ntime = 0.5\ndo = [{{ join = "
+                      "'string' }}, {{ set = 'a.velocity', to = [{0}, 0] }}, {{ set = 'b.velocity', "
+                      "to = [0, 0] }}]\n[contact]\nignore = [['a', 'post'], ['b', 'post']]\n",
+                      side, 4 * side, -side, -4 * side));
+      const sim::Snapshot now = scene.at(0.75);
+      for (const char* bob : {"a", "b"})
+        EXPECT_NEAR((now.bodies[number_of(scene, bob)].velocity - sim::Vec3(0.5 * side, 0, 0)).norm(), 0,
+                    1e-9)
+            << manner.name << " " << bob;
     }
   }
 }

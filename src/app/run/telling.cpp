@@ -11,6 +11,7 @@
 #include "draw/page/measure.h"
 #include "draw/picture/prose.h"
 #include "scene/complaints.h"
+#include "sim/model/wall_name.h"
 
 namespace obscura::app::telling {
 
@@ -107,13 +108,7 @@ std::string capital(std::string text) {
 
 std::string wall(const sim::SceneInfo& cast, int index) {
   const sim::Vec3 n = cast.walls[std::size_t(index)].normal.normalized();
-  if (n.y() > 0.999) return "the floor";
-  if (n.y() < -0.999) return "the ceiling";
-  if (n.x() > 0.999) return "the left wall";
-  if (n.x() < -0.999) return "the right wall";
-  // only space has these
-  if (n.z() > 0.999) return "the back wall";
-  if (n.z() < -0.999) return "the front wall";
+  if (const auto name = sim::wall_name<3>(n)) return std::string(*name);
   return n.y() > 0.05 ? "the slope" : "a wall";
 }
 

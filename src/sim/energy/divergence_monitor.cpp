@@ -154,7 +154,7 @@ std::optional<Trouble> DivergenceMonitor<D>::check_joints(const State<D>& state,
     double off[kMostHeld<D>];
     if (one_with_another(state, i)) continue;
     const int n = rows<D>(joint, i, state, at_, J, off);
-    double size = joint.length;
+    double size = length_held(joint, wound(state, i));
     joint.each_body([&](int body) {
       if (body >= 0) size = std::max(size, bounding_radius(model_.bodies[std::size_t(body)].shape));
     });

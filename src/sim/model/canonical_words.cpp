@@ -102,10 +102,12 @@ std::vector<std::uint64_t> words(const State<D>& state) {
     if (a != 0 || b != 0) w.integer(std::int64_t(i)), w.integer(a), w.integer(b);
     const Wound& it = state.wound[i];
     if (it.drag != 0) w.number(it.drag);
-    if (it.off_a != 0 || it.off_b != 0) w.integer(it.off_a), w.integer(it.off_b);
-    if (it.with != 0) w.integer(it.with);
-    if (it.given != 0) w.number(it.given);
+    if (it.off_a == 0 && it.off_b == 0 && it.with == 0 && it.given == 0) continue;
+    w.integer(std::int64_t(i)), w.integer(it.off_a), w.integer(it.off_b), w.integer(it.with);
+    w.number(it.given);
   }
+  for (const WheelLeft& it : state.wheels_left)
+    w.integer(it.joint), w.integer(it.wheel), w.integer(std::llround(it.wrap / (2 * std::numbers::pi)));
   for (const Made<D>& it : state.made) {
     w.template numbers<D>(it.place);
     w.template numbers<kAngular<D>>(it.turn);

@@ -158,7 +158,7 @@ struct Wound {
 struct WheelLeft {
   int joint = 0;    // the piece that slides over it, or that ends there
   int wheel = 0;    // which of Joint::around
-  double wrap = 0;  // rad, below zero
+  double wrap = 0;  // rad, below zero but for what it still was as it left
 
   bool operator==(const WheelLeft&) const = default;
 };
@@ -208,8 +208,8 @@ struct State {
   EventLog events;             // of a model with conditions
   std::vector<int> on_piece;   // of a model with wires one a joint: the piece of the wire that its a is on
   std::vector<Wound> wound;    // of a model with ropes on wheels, or with friction, one a joint
-  std::vector<WheelLeft> wheels_left;
-  std::vector<Made<D>> made;  // of a model whose events make joints one a joint
+  std::vector<WheelLeft> wheels_left;  // by ropes, in the order in which they left (follow_ropes())
+  std::vector<Made<D>> made;           // of a model whose events make joints one a joint
 
   // bonded bodies (sim/step/bonded_bodies.h): then all above describes the parts, and `bonded` is stepped
   std::vector<char> intact;             // one a bond: whether it is whole

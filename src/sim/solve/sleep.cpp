@@ -187,9 +187,10 @@ void Sleep<D>::disturb_pulled(const State<D>& state) {
       if (spring.a.body == carrier) disturb(spring.b.body);
       if (spring.b.body == carrier) disturb(spring.a.body);
     }
-    for (const Joint<D>& joint : model_.joints) {
-      if (joint.any_body([&](int body) { return body == carrier; }))
-        joint.each_body([&](int body) { disturb(body); });
+    for (std::size_t i = 0; i < model_.joints.size(); ++i) {
+      bool carries = false;
+      each_body_held(model_, state, i, [&](int body) { carries = carries || body == carrier; });
+      if (carries) each_body_held(model_, state, i, [&](int body) { disturb(body); });
     }
   }
   // what a motor moves as time goes on does not rest

@@ -229,12 +229,24 @@ bool fits(const State<D>& state, const Model<D>& model) {
     const std::size_t wheels = model.joints[i].around.size();
     good = std::isfinite(it.a) && std::isfinite(it.b) && std::isfinite(it.drag) && std::isfinite(it.given) &&
            it.off_a >= 0 && it.off_b >= 0 && std::size_t(it.off_a) + std::size_t(it.off_b) <= wheels;
-    // all that are one are pieces of one rope
-    const std::size_t other = i + std::size_t(std::int64_t(it.with));
-    good = good && other < joints && model.joints[other].rope == model.joints[i].rope;
+    // all that are one are pieces of one rope, in a row, each of which ends on a wheel where the next begins
+    if (it.with == 0) continue;
+    const std::int64_t head = std::int64_t(i) + std::min(0, it.with),
+                       last = std::int64_t(i) + std::max(0, it.with);
+    good = good && model.joints[i].rope >= 0 && head >= 0 && last < std::int64_t(joints) &&
+           state.wound[std::size_t(head)].with >= std::int64_t(i) - head;
+    for (std::int64_t k = std::int64_t(i) + 1; good && k <= last; ++k) {
+      const Joint<D>&before = model.joints[std::size_t(k - 1)], &piece = model.joints[std::size_t(k)];
+      good = piece.rope == before.rope && before.on_b.offset != 0 && piece.on_a.offset != 0 &&
+             state.wound[std::size_t(k)].with == std::int64_t(i) - k;
+    }
   }
-  for (const WheelLeft& it : state.wheels_left)
+  for (const WheelLeft& it : state.wheels_left) {
     good = good && it.joint >= 0 && std::size_t(it.joint) < joints && it.wheel >= 0 && std::isfinite(it.wrap);
+    if (good)
+      good =
+          std::size_t(it.wheel) < std::max<std::size_t>(1, model.joints[std::size_t(it.joint)].around.size());
+  }
   for (const Contact<D>& contact : state.contacts) {
     good = good && body(contact.key.a) && (body(contact.key.b) || wall(-1 - contact.key.b)) &&
            contact.touching <= ContactMode::slide;

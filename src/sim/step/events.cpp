@@ -390,8 +390,9 @@ bool Events<D>::note_fired(State<D>& state, const Found& found, TimeStamp at) {
 // does what is asked for at one instant. What the room's hand gives by it of energy is work.
 template <int D>
 void Events<D>::carry_out(State<D>& state, const std::vector<Due>& actions, TimeStamp at) {
-  bool any = false, joined = false;
+  bool any = false;
   std::vector<const Change<D>*> kicks;
+  std::vector<std::size_t> joined;
   for (const auto& [action, which] : actions) {
     if (action->what == Action::Do::stop) state.events.stopped = 1;
     any = any || (action->what != Action::Do::stop && action->what != Action::Do::mark);
@@ -435,9 +436,7 @@ void Events<D>::carry_out(State<D>& state, const std::vector<Due>& actions, Time
           std::erase_if(changes, [&](int c) { return model_.changes[std::size_t(c)].replaces(made); });
           changes.push_back(of);
           if (joins) {
-            const auto joint = std::size_t(made.index);
-            state.made[joint] = as_it_stands(model_.joints[joint], state, joint), state.broken[joint] = 0;
-            joined = true;
+            joined.push_back(std::size_t(made.index)), state.broken[joined.back()] = 0;
             known_broken(state, made.index, false);
           }
           if (made.of != Change<D>::Of::hold) break;
@@ -450,6 +449,9 @@ void Events<D>::carry_out(State<D>& state, const std::vector<Due>& actions, Time
       }
     }
   }
+  const auto on_wheels = [&](std::size_t joint) { return winds(model_.joints[joint]); };
+  if (std::any_of(joined.begin(), joined.end(), on_wheels)) leave_wheels(model_, state);
+  for (const std::size_t joint : joined) state.made[joint] = as_it_stands(model_.joints[joint], state, joint);
   if (!state.broken.empty()) break_dependents(model_, state.broken);
   make(state);
   // of what is free now
@@ -465,9 +467,9 @@ void Events<D>::carry_out(State<D>& state, const std::vector<Due>& actions, Time
   std::fill(state.frozen.begin(), state.frozen.end(), 0);
   std::fill(state.quiet.begin(), state.quiet.end(), 0.0);
   stepper_->begin_anew(state, t);
-  if (joined || !kicks.empty()) take_impulses_of_joining(state, at.fraction, t);
+  if (!joined.empty() || !kicks.empty()) take_impulses_of_joining(state, at.fraction, t);
   // a kick works as far as what holds the body lets it
-  if (!joined && !kicks.empty() && !state.work.empty()) state.work[0] = worked + given();
+  if (joined.empty() && !kicks.empty() && !state.work.empty()) state.work[0] = worked + given();
 }
 
 // gives a body another velocity or spin; formulas read what was before

@@ -7,11 +7,12 @@
 #include <string>
 #include <type_traits>
 
+#include "sim/constraint/joints/joint.h"
 #include "sim/model/body_motion.h"
 #include "sim/model/incomplete.h"
 #include "sim/solve/contact_solver.h"
 #include "sim/step/archive.h"
-#include "sim/step/outside.h"
+#include "sim/step/outside_room.h"
 #include "sim/step/snapshots.h"
 
 namespace obscura::sim {
@@ -392,6 +393,7 @@ std::string RunOf<D>::set(const NewBodyColumns& columns) {
   if (!before_set_) before_set_ = state_;
   state_ = next;
   stepper_.emplace(model_);
+  leave_wheels(stepper_->model(state_), state_);
   stepper_->begin_anew(state_, time({state_.step, 0}, model_.rate));
   trouble_.reset(), divergence_.reset();
   between_ = false;

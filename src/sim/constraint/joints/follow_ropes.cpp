@@ -37,7 +37,7 @@ struct WheelOfRope {
   double rate = 0;             // rad/s
   Straight in = {}, out = {};  // to it and from it
   double other_wrap = 0;       // rad: above zero it lies on the wheel's other side
-  double around = 0;           // m: how much longer the way there is than the straight one
+  double detour = 0;           // m: how much longer the way there is than the straight one
 };
 
 // the wheels of all ropes as they stand in a state
@@ -55,20 +55,12 @@ class RopeWheels {
 
   bool broken(std::size_t i) const { return i < state_.broken.size() && state_.broken[i]; }
 
-  // a joint with its bodies, as now or as in `of`
-  template <class Act>
-  auto with_pose(std::size_t i, std::span<const BodyMotion<2>> of, Act&& act) const {
-    static const BodyMotion<2> room;
-    const auto side = [&](int body) -> const BodyMotion<2>& {
-      return body < 0 ? room : of[std::size_t(body)];
-    };
-    const Joint<2>& joint = model_.joints[i];
-    const AngularVec<2> turn = turn_between(joint, i, state_);
-    return act(JointPose<2>{joint, side(joint.a.body), side(joint.b.body), turn, of, wound(state_, i)});
-  }
+  // a joint with its bodies
   template <class Act>
   auto with_pose(std::size_t i, Act&& act) const {
-    return with_pose(i, std::span<const BodyMotion<2>>(all_), act);
+    const Joint<2>& joint = model_.joints[i];
+    const AngularVec<2> turn = turn_between(joint, i, state_);
+    return act(JointPose<2>{joint, body(joint.a.body), body(joint.b.body), turn, all_, wound(state_, i)});
   }
 
   // act(wheel) for each wheel of ropes that these may leave or come back to
@@ -96,18 +88,19 @@ class RopeWheels {
   std::size_t head(std::size_t i) const { return i + std::size_t(std::min(0, wound(state_, i).with)); }
 
  private:
+  const BodyMotion<2>& body(int number) const {
+    static const BodyMotion<2> room;
+    return number < 0 ? room : all_[std::size_t(number)];
+  }
+
   const WheelLeft* find(std::size_t joint, std::size_t wheel) const {
     for (const WheelLeft& it : state_.wheels_left)
       if (std::size_t(it.joint) == joint && std::size_t(it.wheel) == wheel) return &it;
     return nullptr;
   }
 
-  Straight reach(const End<2>& a, double on_a, const End<2>& b, double on_b) const {
-    static const BodyMotion<2> room;
-    const auto side = [&](int body) -> const BodyMotion<2>& {
-      return body < 0 ? room : all_[std::size_t(body)];
-    };
-    const BodyMotion<2>&p = side(a.body), &q = side(b.body);
+  Straight straight_between(const End<2>& a, double on_a, const End<2>& b, double on_b) const {
+    const BodyMotion<2>&p = body(a.body), &q = body(b.body);
     const Vec<2> arm_p = p.arm(a.local), arm_q = q.arm(b.local), u = q.velocity(arm_q) - p.velocity(arm_p);
     Straight it{rope_piece<2>(p.x + arm_p, q.x + arm_q, on_a - on_b)};
     const Vec<2>& d = it.piece.direction;
@@ -116,20 +109,21 @@ class RopeWheels {
   }
 
   // what there is to know of a wheel between two places; `near`: its wrap but for whole rounds
-  void look(const End<2>& before, double on_before, const End<2>& center, const End<2>& after,
-            double on_after, double near, WheelOfRope& it) const {
+  void find_wrap(const End<2>& before, double on_before, const End<2>& center, const End<2>& after,
+                 double on_after, double near, WheelOfRope& it) const {
     constexpr double kRound = 2 * std::numbers::pi;
     const double sign = it.offset > 0 ? 1 : -1;
-    it.in = reach(before, on_before, center, it.offset), it.out = reach(center, it.offset, after, on_after);
+    it.in = straight_between(before, on_before, center, it.offset),
+    it.out = straight_between(center, it.offset, after, on_after);
     it.wrap = sign * angle_between(it.in.piece.direction, it.out.piece.direction, sign * near);
     it.rate = sign * (it.out.rate - it.in.rate);
     if (!it.left) return;
-    const Straight in = reach(before, on_before, center, -it.offset),
-                   out = reach(center, -it.offset, after, on_after);
+    const Straight in = straight_between(before, on_before, center, -it.offset),
+                   out = straight_between(center, -it.offset, after, on_after);
     it.other_wrap = std::fabs(angle_between(it.in.piece.direction, in.piece.direction)) +
                     std::fabs(angle_between(it.out.piece.direction, out.piece.direction)) - it.wrap - kRound;
-    it.around = in.piece.length + out.piece.length + std::fabs(it.offset) * it.other_wrap -
-                reach(before, on_before, after, on_after).piece.length;
+    it.detour = in.piece.length + out.piece.length + std::fabs(it.offset) * it.other_wrap -
+                straight_between(before, on_before, after, on_after).piece.length;
   }
 
   // wheel k that a rope with friction slides over; none, where only what stands still is next to it
@@ -154,7 +148,7 @@ class RopeWheels {
     const auto offset = [&](std::size_t at) { return at == 0 || at == n + 1 ? 0 : joint.around[at - 1]; };
     const WheelLeft* known = find(i, k);
     const double near = on ? wrap_at(joint, now, k) : known ? known->wrap : 0;
-    look(place(before), offset(before), joint.over[k], place(after), offset(after), near, it);
+    find_wrap(place(before), offset(before), joint.over[k], place(after), offset(after), near, it);
     return it;
   }
 
@@ -174,15 +168,15 @@ class RopeWheels {
         int at = 0;  // the place before it, of those that the rope is on
         for (std::size_t k = h; k <= i; ++k) at += int(model_.joints[k].over.size());
         const WheelLeft* known = find(i, 0);
-        look(places.end(at), places.offset(at), joint.b, places.end(at + 1), places.offset(at + 1),
-             known ? known->wrap : 0, it);
+        find_wrap(places.end(at), places.offset(at), joint.b, places.end(at + 1), places.offset(at + 1),
+                  known ? known->wrap : 0, it);
         return;
       }
       with_pose(i + 1, [&](const JointPose<2>& after) {
         const RopePlaces<2> others(after);
         const int at = places.size() - 2;
-        look(places.end(at), places.offset(at), joint.b, others.end(1), others.offset(1),
-             wrap_between(before, after), it);
+        find_wrap(places.end(at), places.offset(at), joint.b, others.end(1), others.offset(1),
+                  wrap_between(before, after), it);
       });
     });
     return it;
@@ -211,6 +205,7 @@ class WheelChanges {
     } else {
       slides ? leave_over(it) : join(it);
     }
+    wake(model_.joints[it.joint].rope);
     return true;
   }
   void note(const WheelOfRope& it) {
@@ -220,6 +215,18 @@ class WheelChanges {
 
  private:
   Wound& rope(std::size_t i) { return state_.wound[i]; }
+
+  // what rests on a rope may hang on another end of it from now on
+  void wake(int rope) {
+    for (const Joint<2>& joint : model_.joints) {
+      if (joint.rope != rope) continue;
+      joint.each_body([&](int body) {
+        if (body < 0) return;
+        if (std::size_t(body) < state_.frozen.size()) state_.frozen[std::size_t(body)] = 0;
+        if (std::size_t(body) < state_.quiet.size()) state_.quiet[std::size_t(body)] = 0;
+      });
+    }
+  }
 
   // the angles at its ends, of a rope that goes another way from now on: near to where they were
   void turn_ends(std::size_t i) {
@@ -234,6 +241,8 @@ class WheelChanges {
     turn_ends(it.joint);
   }
 
+  // Of several that it has left from one end it lies on all up to that which it comes back to: those stand
+  // still, and it leaves them from that end on.
   void come_back_over(const WheelOfRope& it) {
     const Joint<2>& joint = model_.joints[it.joint];
     Wound& now = rope(it.joint);
@@ -304,7 +313,8 @@ std::optional<EndOfRope> change_wheels(const Model<2>& model, State<2>& state) {
   wheels.each_wheel([&](const WheelOfRope& it) {
     if (ended || !it.left || it.other_wrap <= kNoWrap) return;
     const std::size_t h = wheels.head(it.joint);
-    if (wheels.slack(h) - it.around <= kTight * model.joints[h].length) ended = EndOfRope{int(h), true};
+    const double length = length_held(model.joints[h], wound(state, h));
+    if (wheels.slack(h) - it.detour <= kTight * length) ended = EndOfRope{int(h), true};
   });
   // pieces that are one have one force
   for (std::size_t i = 0; i < state.wound.size() && i < state.joint_forces.size(); ++i)
@@ -368,6 +378,13 @@ std::optional<EndOfRope> follow_ropes(const Model<D>& model, State<D>& state,
 }
 
 template <int D>
+void leave_wheels(const Model<D>& model, State<D>& state) {
+  if (!has_wound_ropes(model)) return;
+  state.wound.resize(model.joints.size());
+  if constexpr (D == 2) change_wheels(model, state);
+}
+
+template <int D>
 std::optional<double> wheel_time(const Model<D>& model, const State<D>& state, double most) {
   std::optional<double> first;
   if constexpr (D == 2) {
@@ -384,6 +401,8 @@ template std::optional<EndOfRope> follow_ropes<2>(const Model<2>&, State<2>&, st
                                                   double);
 template std::optional<EndOfRope> follow_ropes<3>(const Model<3>&, State<3>&, std::span<const BodyMotion<3>>,
                                                   double);
+template void leave_wheels<2>(const Model<2>&, State<2>&);
+template void leave_wheels<3>(const Model<3>&, State<3>&);
 template std::optional<double> wheel_time<2>(const Model<2>&, const State<2>&, double);
 template std::optional<double> wheel_time<3>(const Model<3>&, const State<3>&, double);
 

@@ -131,7 +131,7 @@ Made<D> as_it_stands(const Joint<D>& joint, const State<D>& state, std::size_t n
   Made<D> so;
   if (equations<D>(joint.kind).mechanism) {
     std::vector<BodyMotion<D>> all(state.x.size());
-    joint.each_body([&](int body) {
+    each_body_held(joint, wound(state, number), [&](int body) {
       if (body >= 0) all[std::size_t(body)] = motion(body);
     });
     Row<D> J[kMostHeld<D>];

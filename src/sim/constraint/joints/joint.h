@@ -145,7 +145,10 @@ bool one_with_another(const State<D>& state, std::size_t joint) {
   return wound(state, joint).with < 0;
 }
 
-/// act(body) for each body that a joint of a model holds, with the pieces of its rope that are one with it.
+// Of a joint that is an element of Model::joints, with the pieces of its rope that are one with it, which
+// follow it there.
+
+/// act(body) for each body that it holds.
 template <int D, class Act>
 void each_body_held(const Joint<D>& joint, const Wound& rope, Act&& act) {
   for (int k = 0; k <= std::max(0, rope.with); ++k) (&joint)[k].each_body(act);
@@ -155,11 +158,19 @@ void each_body_held(const Model<D>& model, const State<D>& state, std::size_t jo
   each_body_held(model.joints[joint], wound(state, joint), act);
 }
 
-/// Joint::turn_between() of a joint of a model, with those.
+/// Joint::turn_between() of all.
 template <int D, class Rounds>
 AngularVec<D> turn_between(const Joint<D>& joint, const Wound& rope, Rounds&& rounds) {
   AngularVec<D> sum = joint.turn_between(rounds);
   for (int k = 1; k <= rope.with; ++k) sum += (&joint)[k].turn_between(rounds);
+  return sum;
+}
+
+/// How long its rope is, m.
+template <int D>
+double length_held(const Joint<D>& joint, const Wound& rope) {
+  double sum = joint.length;
+  for (int k = 1; k <= rope.with; ++k) sum += (&joint)[k].length;
   return sum;
 }
 
@@ -180,6 +191,10 @@ template <int D>
 std::optional<EndOfRope> follow_ropes(const Model<D>& model, State<D>& state,
                                       std::type_identity_t<std::span<const BodyMotion<D>>> begun = {},
                                       double done = 0);
+
+/// The same of wheels alone, before any step: ropes that stand past a wheel have left it.
+template <int D>
+void leave_wheels(const Model<D>& model, State<D>& state);
 
 /// When the first rope will leave a wheel, or come back to one, if its bodies go straight on: s from now,
 /// within `most`. None where that is so soon that follow_ropes() has it do so already.

@@ -18,7 +18,7 @@
 //                                                       times the lesser; against the slip where it slips
 // Where its wrap around a wheel falls to zero the rope leaves that, and goes straight on until it comes back:
 //   wrap = s (phi_out - phi_in),   s = 1 to the left, -1 to the right
-// There both ways are one line, so C and J go on; wheels_left.cpp follows it. Pieces of a rope with a wheel
+// There both ways are one line, so C and J go on; follow_ropes.cpp follows it. Pieces of a rope with a wheel
 // between them are then one, whose C is the sum of theirs, in which the wheel's turn does not count.
 // free: all, until it is tight. Its force is the tension, shown as that on a. Breaks by it.
 // Source: Featherstone, Rigid Body Dynamics Algorithms (2008), §8, as a sum of distance constraints; the
@@ -211,22 +211,6 @@ inline bool met_rims(const JointPose<2>& begun, const JointPose<2>& ended, doubl
          (on_wheel(begun, false) && met_rim(rope_end(begun, false), rope_end(ended, false), h));
 }
 
-/// Where the rope is on its wheels, all rounds counted; none where a piece at them runs out within a time h,
-/// s.
-inline std::optional<Wound> on_wheels(const JointPose<2>& at, double h) {
-  Wound now = at.wound;
-  for (const bool first : {true, false}) {
-    const Winding<2>& wheel = first ? at.joint.on_a : last_piece(at).on_b;
-    if (!on_wheel(at, first)) continue;
-    const RopeEnd end = rope_end(at, first);
-    const RopePiece<2> piece = rope_piece<2>(end.from, end.to, end.offset);
-    if (runs_out(end, piece, h)) return {};
-    double& angle = first ? now.a : now.b;
-    angle = angle_between(wheel.start, piece.direction, angle);
-  }
-  return now;
-}
-
 /// How far a rope with friction turns to the left at wheel k of Joint::around at the start, all rounds
 /// counted, rad.
 inline double turn_at_start(const Joint<2>& joint, std::size_t k) {
@@ -261,6 +245,17 @@ inline Wound turned_ends(const JointPose<2>& at) {
                           rope_piece<2>(end.from, end.to, end.offset).direction, angle);
   }
   return now;
+}
+
+/// The same, where its wheels leave the pieces at them some length; none where one runs out within a time h,
+/// s.
+inline std::optional<Wound> on_wheels(const JointPose<2>& at, double h) {
+  for (const bool first : {true, false}) {
+    if (!on_wheel(at, first)) continue;
+    const RopeEnd end = rope_end(at, first);
+    if (runs_out(end, rope_piece<2>(end.from, end.to, end.offset), h)) return {};
+  }
+  return turned_ends(at);
 }
 
 /// How far a rope is wrapped around the wheel between two pieces of it that wind on it, rad. It ends where
@@ -344,7 +339,7 @@ bool is_tight(const JointPose<D>& at) {
   Row<D> row;
   double slack = 0;
   hold_rope(at, &row, &slack);
-  return slack <= kTight * at.joint.length;
+  return slack <= kTight * length_held(at.joint, at.wound);
 }
 
 /// Whether a rope that is tight comes to an end within a time h, s: a place of it to the next.

@@ -347,8 +347,9 @@ bool SpaceIterative::gains(const State<D>& state) {
   }
   for (std::size_t i = 0; i < model_.joints.size(); ++i) {
     if (state.broken[i]) continue;
-    each_body_held(model_, state, i,
-                   [&](int a) { each_body_held(model_, state, i, [&](int b) { link(a, b); }); });
+    // in space no rope leaves a wheel
+    const Joint<D>& joint = model_.joints[i];
+    joint.each_body([&](int a) { joint.each_body([&](int b) { link(a, b); }); });
   }
   before_.assign(n, 0), gained_.assign(n, 0), returned_.assign(n, 0);
   for (int i = 0; i < n; ++i) {

@@ -47,7 +47,7 @@ AllowedOverlap allowed_overlap(const Model<D>& model) {
   return {kMost * crowded * crowded * crowded};
 }
 
-/// m/s: the least speed that a contact wants which is left out; far beyond any that a scene of 1e13 m has.
+/// m/s: the target of a contact that is left out; far beyond any that a scene of 1e13 m has.
 inline constexpr double kNoAim = -1e30;
 /// The most that two bodies may approach in a substep, in widths of the narrower one; see ruling_rate().
 inline constexpr double kCloser = 0.025;

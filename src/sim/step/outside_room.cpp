@@ -1,4 +1,4 @@
-#include "sim/step/outside.h"
+#include "sim/step/outside_room.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include <span>
 
 #include "sim/model/body_motion.h"
+#include "sim/model/wall_name.h"
 #include "sim/shape/shape.h"
 
 namespace obscura::sim {
@@ -28,19 +29,6 @@ double reach(const Body<D>& body, std::span<const SupportVertex<D>> vertices, co
   for (const SupportVertex<D>& vertex : vertices)
     most = std::max(most, vertex.radius - (at.x + at.arm(vertex.at) - wall.point).dot(wall.normal));
   return most;
-}
-
-template <int D>
-std::string called(const Wall<D>& wall, std::size_t index) {
-  constexpr double kAlong = 0.999;
-  const Vec<D>& n = wall.normal;
-  if (n.y() > kAlong) return "the floor";
-  if (n.y() < -kAlong) return "the ceiling";
-  if (n.x() > kAlong) return "the left wall";
-  if (n.x() < -kAlong) return "the right wall";
-  if (n[D - 1] > kAlong) return "the back wall";
-  if (n[D - 1] < -kAlong) return "the front wall";
-  return "wall " + std::to_string(index);
 }
 
 }  // namespace
@@ -68,7 +56,9 @@ std::optional<Outside> outside(const Model<D>& model, const State<D>& before, co
       if (far <= pressed || far <= reaches(was) + digits) continue;
       char metres[32];
       std::snprintf(metres, sizeof metres, "%.3g", far);
-      return Outside{i, std::string(metres) + " m beyond " + called(model.walls[w], w)};
+      const auto name = wall_name<D>(model.walls[w].normal);
+      return Outside{
+          i, std::string(metres) + " m beyond " + (name ? std::string(*name) : "wall " + std::to_string(w))};
     }
   }
   return std::nullopt;
