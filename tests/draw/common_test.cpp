@@ -37,7 +37,7 @@ std::vector<HalfPlane> about(const std::vector<double>& angles, double in) {
 
 TEST(WithinAll, IsWhatIsLeftOfCuts) {
   std::mt19937_64 dice(1);
-  for (int round = 0; round < 100; ++round) {
+  for (int round = 0; round < 200; ++round) {
     std::vector<double> angles;
     const int n = 5 + int(dice() % 300);
     // some of them next to each other, so that their edges are gone when they are moved in

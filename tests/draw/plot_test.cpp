@@ -483,6 +483,7 @@ TEST(Plot, AnOrbitIsDashedOnce) {
   for (Plot* each : {&once, &often}) each->lines[0].style = 1;
   const PlotArea area = plot_area(once, kRect, 2);
   draw_lines(once, area, first), draw_lines(often, area, all);
+  // a dash more or less where the round closes
   EXPECT_NEAR(drawn(all), drawn(first), 0.03 * drawn(first));
   // one that comes back elsewhere is drawn on, and one without dashes is as it was
   Plot damped = orbits({1}, 3);
@@ -492,6 +493,7 @@ TEST(Plot, AnOrbitIsDashedOnce) {
       (*of)[k] *= std::exp(-0.004 * double(k));
   List spiral;
   draw_lines(damped, area, spiral);
+  // its three rounds shrink to a third
   EXPECT_GT(drawn(spiral), 1.5 * drawn(first));
 }
 

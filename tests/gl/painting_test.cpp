@@ -224,7 +224,7 @@ TEST(Painting, WhatStaysBelowWhatMovesIsDrawnOnceToTheSamePixels) {
     auto still = std::make_shared<draw::List>();
     media::Image before;
     int staying = 0;
-    for (int k = 0; k < 60; ++k) {
+    for (int k = 0; k < 100; ++k) {
       const int at = below(int(things.size()));
       const unsigned other = random();
       if (below(12) == 0) things.insert(things.begin() + at, other);

@@ -72,8 +72,7 @@ void expect_only_losses(const sim::World<D>& world, double slack) {
   };
   double before = own(sim::energies(model, state, stepper.paths(), 0)), worst = 0;
   int at = 0;
-  const int steps = model.bodies.size() > kCrowd ? 360 : 600;
-  for (int i = 0; i < steps; ++i) {
+  for (int i = 0; i < 600; ++i) {
     const bool was = driven();
     ASSERT_FALSE(stepper.step(state)) << i;
     const sim::Energies now =

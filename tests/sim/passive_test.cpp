@@ -120,7 +120,7 @@ TEST(Passive, RandomHeapsOfSpaceOnlyLose) {
   for (int seed = 0; seed < 24; ++seed) {
     World<3> world = space_room(seed, 6 + seed);
     world.model.solver = Solver::iterative;
-    ASSERT_NO_FATAL_FAILURE(expect_only_losses(world, 600, kSpace, "seed " + std::to_string(seed)));
+    ASSERT_NO_FATAL_FAILURE(expect_only_losses(world, 900, kSpace, "seed " + std::to_string(seed)));
   }
 }
 
@@ -232,7 +232,7 @@ void expect_tangles_only_lose() {
     const auto left = [&] { return energy(world, state) - state.ledger.displacement; };
     const double all = energy(world, state);
     double before = left();
-    for (int step = 1; step < 240; ++step) {
+    for (int step = 1; step < 300; ++step) {
       const State<D> begun = state;
       const auto trouble = stepper.step(state);
       ASSERT_FALSE(trouble) << "seed " << seed << " at step " << step << ": " << trouble->what;
