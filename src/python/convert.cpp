@@ -133,8 +133,9 @@ Numbers numbers(py::handle from, const std::string& what) {
     throw py::type_error(what + ": no array of numbers: " + got);
   };
   // of None NumPy makes a number that is none
-  const py::array all = from.is_none() ? py::array() : py::array::ensure(from);
-  if (!all || from.is_none()) refuse(shown(from));
+  if (from.is_none()) refuse(shown(from));
+  const py::array all = py::array::ensure(from);
+  if (!all) refuse(shown(from));
   const char kind = all.dtype().kind();
   if (kind != 'f' && kind != 'i' && kind != 'u' && kind != 'b' && kind != 'O')
     refuse(kind == 'c' ? "they are complex" : shown(from));

@@ -30,8 +30,8 @@ Numbers numbers(pybind11::handle from, const std::string& what);
 /// "'a'", "[1, 2, ...": a value in messages, cut where it is long.
 std::string shown(pybind11::handle value);
 
-/// Refuses objects whose __init__ has not run, as T.__new__(T) makes them: pybind11 would work on memory that
-/// nobody has filled.
+/// Refuses objects whose __init__ has not run, as T.__new__(T) makes them. Memory for the C++ object is then
+/// taken when it is first used, and would be read without having been written: what takes it throws instead.
 template <class T>
 void refuse_unmade() {
   pybind11::detail::get_type_info(typeid(T), true)->operator_new = [](std::size_t) -> void* {

@@ -35,12 +35,7 @@ FilmOptions options(const py::kwargs& given) {
     const std::string name = py::str(key);
     if (value.is_none()) continue;
     if (name == "size") {
-      std::pair<int, int> size;
-      try {
-        size = value.cast<std::pair<int, int>>();
-      } catch (const py::cast_error&) {
-        throw py::type_error("size is (width, height) in pixels, not " + shown(value));
-      }
+      const auto size = option<std::pair<int, int>>(name, value, "(width, height) in pixels");
       made.width = size.first, made.height = size.second;
       if (made.width < 1 || made.height < 1)
         throw UsageError("a picture of " + std::string(py::repr(value)) + " pixels");

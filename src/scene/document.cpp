@@ -197,30 +197,41 @@ std::string escape(std::string_view line, int column, std::string_view descripti
   const std::string_view at = from_column(line, column);
   const std::size_t from = line.substr(0, std::min(line.size() - at.size() + 1, line.size())).rfind('\\');
   if (from == line.npos) return {};
+  // two of them are one that is meant
+  std::size_t run = 0;
+  while (run <= from && line[from - run] == '\\') ++run;
+  if (run % 2 == 0) return {};
   std::size_t end = from + 1;
   while (end < line.size() && std::isalpha(static_cast<unsigned char>(line[end])) != 0) ++end;
   const std::string_view word = line.substr(from + 1, end - from - 1);
-  if (word.empty() || word.size() > kLongestEscape) return {};
+  if (word.empty() || word.size() > kLongestEscape || word == "u" || word == "U") return {};
   return fmt::format(
       "in double quotes a \\ is written twice: write '\\\\{0}' for '\\{0}', or put the text in single quotes",
       word);
 }
 
-// a unit behind a number, blanks between them or not, where the parser stopped at it; or one in words that
-// mean true and false elsewhere
+// a unit behind the number that a value begins with, blanks between them or not, where the parser stopped at
+// it
 std::string unit_behind(std::string_view before, std::string_view at) {
   const auto letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
   const auto digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  if (at.empty() || at[0] == '/' || before.find('=') == before.npos) return {};
   std::size_t end = 0;
   while (end < at.size() &&
          (letter(at[end]) || at[end] == '/' || static_cast<unsigned char>(at[end]) >= 0x80))
     ++end;
   std::string_view number = before.substr(0, before.find_last_not_of(" \t") + 1);
   if (end == 0 || number.empty() || !digit(number.back())) return {};
-  number.remove_prefix(number.find_last_not_of("0123456789._+-") + 1);
-  if (number.empty() || end > kLongestEscape) return {};
+  number.remove_prefix(number.find_last_not_of("0123456789._+-eE") + 1);
+  const std::string_view ahead = before.substr(0, std::size_t(number.data() - before.data()));
+  if (number.empty() || end > kLongestEscape ||
+      std::string_view(" \t=[,").find(ahead.back()) == std::string_view::npos)
+    return {};
+  const std::string_view word = at.substr(0, end),
+                         rest = at.substr(std::min(at.find_first_not_of(" \t", end), at.size()));
+  if (word == "true" || word == "false" || rest.starts_with('=')) return {};
   return fmt::format("a number has no unit, all are in m, kg, s and degrees; got {}{}",
-                     before.substr(std::size_t(number.data() - before.data())), at.substr(0, end));
+                     before.substr(std::size_t(number.data() - before.data())), word);
 }
 
 // guesses what was forgotten at the place where the parser stopped: a quote, a bracket, or the quotes around

@@ -73,22 +73,18 @@ TEST_F(EventsOfRuns, AreMeasuredAtTheirMarks) {
       "sweep scene.toml --vary physics.rate=300,600 --measure "
       "time@hit,ball.position.y@hit,ball.velocity.y@hit,ball.position.x@far,time@hit[50]");
   ASSERT_EQ(run.exit, 0) << run.err;
-  std::istringstream rows(run.out);
-  std::string line;
-  std::getline(rows, line);
-  for (int i = 0; i < 2; ++i) {
-    std::getline(rows, line);
-    std::vector<std::string> cells;
-    std::istringstream stream(line);
-    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-    ASSERT_GE(cells.size(), 6u) << line;
+  const auto rows = cells(run.out);
+  for (std::size_t i = 1; i <= 2; ++i) {
+    ASSERT_GT(rows.size(), i) << run.out;
+    const std::vector<std::string>& row = rows[i];
+    ASSERT_GE(row.size(), 6u) << run.out;
     const double t = std::sqrt(2 * 1.9 / 9.81);
-    EXPECT_NEAR(std::stod(cells[2]), t, 1e-9);
-    EXPECT_NEAR(std::stod(cells[3]), 0.1, 1e-9);
+    EXPECT_NEAR(std::stod(row[2]), t, 1e-9);
+    EXPECT_NEAR(std::stod(row[3]), 0.1, 1e-9);
     // right after it: e = 0.8 of what it fell with
-    EXPECT_NEAR(std::stod(cells[4]), 0.8 * 9.81 * t, 1e-9);
-    EXPECT_NEAR(std::stod(cells[5]), 3, 1e-9);
-    EXPECT_TRUE(cells.size() == 6 || cells[6].empty()) << line;
+    EXPECT_NEAR(std::stod(row[4]), 0.8 * 9.81 * t, 1e-9);
+    EXPECT_NEAR(std::stod(row[5]), 3, 1e-9);
+    EXPECT_TRUE(row.size() == 6 || row[6].empty()) << run.out;
   }
   const Outcome wrong = obscura("sweep scene.toml --measure time@hat");
   EXPECT_EQ(wrong.exit, 2);

@@ -14,20 +14,7 @@
 namespace obscura::app {
 namespace {
 
-class Sweep : public Program {
- protected:
-  /// A table's cells, of one without quotes.
-  static std::vector<std::vector<std::string>> cells(const std::string& table) {
-    std::vector<std::vector<std::string>> rows;
-    std::istringstream lines(table);
-    for (std::string line; std::getline(lines, line);) {
-      rows.emplace_back();
-      std::istringstream row(line + ",");
-      for (std::string cell; std::getline(row, cell, ',');) rows.back().push_back(cell);
-    }
-    return rows;
-  }
-};
+class Sweep : public Program {};
 
 const char* const kThrow = R"(
 duration = 1

@@ -44,10 +44,24 @@ TEST_F(Usage, WhatIsNoCommandIsToldWhatIs) {
 TEST_F(Usage, WhatVariesIsNamedAsItWasTyped) {
   const std::string asked = "sweep scene.toml --measure energy.total@end --vary ";
   refuses(asked + "mass=1,2", "--vary mass=1: ", 3);
-  refuses(asked + "ball.mass=1..5", "--vary ball.mass=1..5: a range is from:to or from:to:stride, as in 1:5");
+  refuses(asked + "ball.mass=1..5", "; a range is from:to or from:to:stride, as in 1:5", 3);
+  for (const char* out : {"a.png --at 0", "a.mp4", "a.html"}) {
+    refuses("sweep scene.toml --vary ball.mas=1,2 -o " + std::string(out), "--vary ball.mas=1: ", 3);
+    refuses("sweep scene.toml --vary seed=1:400 -o " + std::string(out), "400 runs are more than ");
+  }
   refuses("figure scene.toml -o a.svg --vary ball.mas=1,2", "--vary ball.mas=1: ", 3);
   EXPECT_EQ(shell("timeout 60 " OBSCURA_BINARY " " + asked + "mass=1,2").err.find("--set"),
             std::string::npos);
+}
+
+// of a key whose values are numbers of copies
+TEST_F(Usage, CopiesThatVaryAreNoRange) {
+  scene(
+      "duration = 0.1\n[[ball]]\nname = \"ball\"\nradius = 0.2\nposition = [1, 1]\ncopies = { count = 3, "
+      "offset = [1, "
+      "0] }\n");
+  const Outcome run = obscura("sweep scene.toml --measure energy.total@0 --vary ball.fixed=0..1,0..2");
+  EXPECT_EQ(run.exit, 0) << run.err;
 }
 
 TEST_F(Usage, AnEndingThatNothingMakesIsUsage) {

@@ -129,7 +129,7 @@ TEST(Builder, AnUnknownKeyIsRefusedWhereItIsGiven) {
 }
 
 TEST(Builder, AKeyThatIsGivenTwiceIsRefusedByItsName) {
-  // its message named a line of a text that nobody had written
+  // its message named a line of a text that does not exist
   for (const auto& twice :
        std::vector<std::function<void()>>{[] {
                                             Builder(Table{{"room", Table{{"drag", 1}, {"drag", 2}}}});

@@ -424,19 +424,11 @@ TEST_P(Player, PointingAtABodyTellsItsNameAndValues) {
 // The values of a run as `obscura states` writes them, at each frame of the film, by their columns' names.
 std::vector<std::map<std::string, double>> table_of(const std::string& csv) {
   std::vector<std::map<std::string, double>> rows;
-  std::istringstream lines(csv);
-  std::vector<std::string> names;
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::vector<std::string> cells;
-    for (std::string cell; std::getline(words, cell, ',');) cells.push_back(cell);
-    if (names.empty()) {
-      names = cells;
-      continue;
-    }
+  const auto table = cells(csv);
+  for (std::size_t row = 1; row < table.size(); ++row) {
     rows.emplace_back();
-    for (std::size_t i = 0; i < std::min(names.size(), cells.size()); ++i)
-      rows.back()[names[i]] = std::atof(cells[i].c_str());
+    for (std::size_t i = 0; i < std::min(table[0].size(), table[row].size()); ++i)
+      rows.back()[table[0][i]] = std::atof(table[row][i].c_str());
   }
   return rows;
 }

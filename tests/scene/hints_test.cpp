@@ -119,6 +119,19 @@ TEST(Hints, NumbersAreWithoutUnits) {
   EXPECT_THAT(number("radius = 20 cm"), ElementsAre(EndsWith("; got 20 cm")));
 }
 
+// What only stands behind a number is no unit, and a backslash that is written twice is right.
+TEST(Hints, OfUnitsAndEscapesAreForTheseAlone) {
+  for (const char* line :
+       {"ball2 kg = 3", "mass = 10 radius = 2", "mass = 2 // heavy", "mass = 10 true", "mass = 0x1g"})
+    EXPECT_THAT(hints_of("[[ball]]\n" + std::string(line) + "\n"),
+                Not(testing::Contains(HasSubstr("has no unit"))))
+        << line;
+  for (const char* line : {"label = \"a \\\\alpha", "label = \"a \\u12\""})
+    EXPECT_THAT(hints_of("[[ball]]\n" + std::string(line) + "\n"),
+                Not(testing::Contains(HasSubstr("is written twice"))))
+        << line;
+}
+
 TEST(Hints, AnAngleHasAVertex) {
   EXPECT_THAT(hints_of(kHintedBall + "[[figure.angle]]\nbetween = [\"a\", [2, 3]]\n"),
               testing::Contains(EndsWith("an angle is 'at' its vertex, from 'from' to 'to'")));

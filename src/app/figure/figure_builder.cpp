@@ -177,11 +177,10 @@ FigureBuilder::FigureBuilder(const std::string& file, const std::vector<std::str
     take(scene, times, said);
     const std::vector<std::string>& titles = figure.titles;
     const bool entitled = !figure.room && std::size_t(run) < titles.size();
-    variants_.push_back({scene,
-                         entitled                ? titles[std::size_t(run)]
-                         : variants.keys.empty() ? ""
-                                                 : '"' + Variation::spoken(variants[run].back()) + '"',
-                         entitled ? titles[std::size_t(run)] : said});
+    std::string name = entitled ? titles[std::size_t(run)] : "";
+    const std::string words = entitled ? name : said;
+    if (!entitled && !variants.keys.empty()) name = '"' + Variation::spoken(variants[run].back()) + '"';
+    variants_.push_back({scene, name, words});
   }
   const int n = int(panels_.size()) *
                 (panels_.front().cast.dimension == 3 ? int(panels_.front().scene.cameras.size()) : 1);

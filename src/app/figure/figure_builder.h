@@ -97,7 +97,7 @@ class FigureBuilder {
   struct Variant {
     scene::Scene scene;
     std::string name;
-    std::string words;  // with what it is the value of
+    std::string words;  // key and value, as in "e = 0.5", where there is room
   };
   std::vector<draw::Plot> plots() const;
 

@@ -19,16 +19,14 @@ namespace obscura::app {
 
 namespace {
 
-constexpr std::int64_t kMostRuns = 16;
 constexpr double kHeaviest = 2;         // of lines in small panels
 constexpr double kLeastType = 21;       // page units: em of their words
 constexpr double kAcrossInSpace = 1.5;  // a panel's width over its height
 
-// where the scene has its `vary`, or the command
+// where its `vary` is
 [[noreturn]] void refuse(const scene::Scene& scene, std::string message) {
   scene::Complaint it = scene.film.vary_at;
   it.message = std::move(message);
-  if (it.file.starts_with("--set ")) throw UsageError(it.text());
   throw scene::Error({std::move(it)});
 }
 
@@ -51,7 +49,7 @@ scene::Scene varied(const scene::Scene& scene, const Variations& all, std::int64
     for (const std::string& set : all.sets(i, {}))
       for (scene::Complaint& each : complaints) {
         if (!is_of(each, set)) continue;
-        const std::string message = fmt::format("'vary': {}: {}", set, each.message);
+        const std::string message = fmt::format("'vary': {}: {}{}", set, each.message, of_range(set));
         each = scene.film.vary_at, each.message = message;
       }
     throw scene::Error(std::move(complaints));
@@ -90,10 +88,10 @@ std::vector<Ahead::Run> compared(const scene::Scene& scene) {
     throw UsageError(fmt::format("{} is one run, and film.vary films several: --set 'film.vary=\"\"'",
                                  scene.trajectory_file));
   const Variations all = variations_of(scene);
-  if (all.size > kMostRuns)
+  if (all.size > kMostCompared)
     refuse(scene, fmt::format("'vary': {} runs are more than {}, the most that a film shows; obscura "
                               "sweep takes more",
-                              all.size, kMostRuns));
+                              all.size, kMostCompared));
   const std::vector<std::string>& names = scene.film.vary_names;
   if (!names.empty() && std::int64_t(names.size()) != all.size)
     refuse(scene, fmt::format("'vary_names' has {} names for {} runs", names.size(), all.size));

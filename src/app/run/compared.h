@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "app/run/simulation.h"
 #include "scene/scene.h"
 
 namespace obscura::app {
+
+/// The most runs that a film shows.
+inline constexpr std::int64_t kMostCompared = 16;
 
 /// The runs of a film that varies keys (film.vary), each with its scene as its panel shows it: one clock, one
 /// camera, one scale. None where the film is of one run. Throws UsageError and scene::Error.

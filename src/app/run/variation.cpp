@@ -75,12 +75,6 @@ Variation::Variation(std::string_view text) {
     if (i < list.size() && list[i] == ']' && depth > 0) --depth;
     if (i < list.size() && (list[i] != ',' || depth > 0)) continue;
     const std::string_view value = list.substr(from, i - from);
-    if (const auto dots = value.find(".."); dots != value.npos && dots > 0)
-      if (const auto a = sim::parse_rational(value.substr(0, dots)),
-          b = sim::parse_rational(value.substr(dots + 2));
-          a && b)
-        throw UsageError(fmt::format("--vary {}: a range is from:to or from:to:stride, as in {}:{}", text,
-                                     value.substr(0, dots), value.substr(dots + 2)));
     if (const auto several = range(value, text))
       values.insert(values.end(), several->begin(), several->end());
     else
@@ -220,11 +214,22 @@ bool is_of(const scene::Complaint& it, const std::string& set) {
   return named.ends_with(kCut) && set.starts_with(named.substr(0, named.size() - kCut.size()));
 }
 
+std::string of_range(const std::string& set) {
+  const std::string_view value = std::string_view(set).substr(std::min(set.find('='), set.size() - 1) + 1);
+  const std::size_t dots = value.find("..");
+  if (dots == value.npos) return {};
+  const std::string_view from = value.substr(0, dots), to = value.substr(dots + 2);
+  if (!sim::parse_rational(from) || !sim::parse_rational(to)) return {};
+  return fmt::format("; a range is from:to or from:to:stride, as in {}:{}", from, to);
+}
+
 scene::Error of_vary(const scene::Error& error, const std::vector<std::string>& values) {
   std::vector<scene::Complaint> all = error.complaints;
   for (scene::Complaint& each : all)
-    if (std::any_of(values.begin(), values.end(), [&](const std::string& set) { return is_of(each, set); }))
-      each.file.replace(0, kFlag.size(), "--vary ");
+    for (const std::string& set : values) {
+      if (!is_of(each, set)) continue;
+      each.file.replace(0, kFlag.size(), "--vary "), each.message += of_range(set);
+    }
   return scene::Error(std::move(all));
 }
 

@@ -60,6 +60,9 @@ struct Variations {
 /// Whether a complaint is of a key's value, which it names "--set ball.mass=1", long ones cut.
 bool is_of(const scene::Complaint& it, const std::string& set);
 
+/// What is said besides where a value is refused, "ball.mass=1..5", that looks as if it were a range.
+std::string of_range(const std::string& set);
+
 /// The same complaints; those of these values name --vary.
 scene::Error of_vary(const scene::Error& error, const std::vector<std::string>& values);
 

@@ -23,6 +23,7 @@
 #include "app/film/film.h"
 #include "app/film/film_page.h"
 #include "app/film/ordered_pipeline.h"
+#include "app/run/compared.h"
 #include "app/run/measures.h"
 #include "app/run/run_marks.h"
 #include "app/run/shard.h"
@@ -186,11 +187,21 @@ int page(const SweepFlags& flags) {
     throw UsageError(fmt::format(
         "-o {}: --measure, --at, --shard, --resume, --anew and --format are for tables and pictures",
         *flags.out));
+  // what is wrong with a value is told as of --vary
+  const Variations variations(flags.vary);
+  if (variations.size > kMostCompared)
+    throw UsageError(fmt::format("-o {}: {} runs are more than {}, the most a page has", *flags.out,
+                                 variations.size, kMostCompared));
+  std::string text;
+  for (std::int64_t run = 0; run < variations.size; ++run)
+    text = varied_by_flag(variations, run, flags.sets, [&](const std::vector<std::string>& with) {
+             return run == 0 ? scene::read(flags.scene, with) : scene::parse(text, flags.scene, with);
+           }).text;
   std::string vary;
   for (const std::string& each : flags.vary) vary += (vary.empty() ? "" : ";") + each;
   std::vector<std::string> sets = flags.sets;
   sets.push_back("film.vary=\"" + vary + "\"");
-  const scene::Scene scene = with_run_marks(scene::read(flags.scene, sets));
+  const scene::Scene scene = with_run_marks(scene::parse(text, flags.scene, sets));
   FilmOptions options;
   options.progress = flags.progress, options.context = flags.context;
   return film_page(scene, Shots::film(scene.duration, scene.film.fps, scene.film.speed), *flags.out, options);

@@ -23,8 +23,8 @@ void add_marker(int marker, const Point& at, double radius, Color color, List& l
 /// A line in the dashes of its style, which begin at its first node. `point`: page units.
 void add_dashed(const std::vector<Node>& nodes, int style, double point, List& list);
 
-/// The pieces of a line that do not lie on what comes before them in it, whatever follows: of an orbit its
-/// first round. Dashes of a second one would fill the gaps of the first.
+/// Requires a node. The pieces of a line that do not lie on what comes before them in it, whatever follows:
+/// of an orbit its first round. Dashes of a second one would fill the gaps of the first.
 std::vector<std::vector<Node>> once(const std::vector<Node>& nodes, double point);
 
 /// The markers of its style along a line: at the same places however long it has grown.

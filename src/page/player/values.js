@@ -11,6 +11,9 @@ const signless = (/** @type {string} */ text) => (Number(text) === 0 ? text.repl
 const raised = (/** @type {number} */ power) =>
   minus(String(power)).replace("−", "⁻").replace(/[0-9]/g, (digit) => UP[Number(digit)]);
 
+// in a room of many kilometres the last digit that is known is one before the point
+const known = (/** @type {number} */ x, /** @type {number} */ within) => (within > 1 ? Math.round(x / within) * within : x);
+
 /**
  * A number with so many digits that count, and none finer than it is known; one that is nearer to zero than that is 0.
  * @param {number} x
@@ -18,13 +21,14 @@ const raised = (/** @type {number} */ power) =>
  * @param {number} [digits]
  */
 export function numeral(x, within = 0, digits = 3) {
+  x = known(x, within);
   if (!(Math.abs(x) > within / 2)) return "0";
   if (Math.abs(x) < within) x = Math.sign(x) * within;
   const power = Math.floor(Math.log10(Math.abs(x)) + 1e-12),
-    known = within > 0 ? -Math.round(Math.log10(within)) : Infinity;
-  const decimals = Math.max(Math.min(digits - 1 - power, known), 0);
+    last = within > 0 ? -Math.round(Math.log10(within)) : Infinity;
+  const decimals = Math.max(Math.min(digits - 1 - power, last), 0);
   if (power >= SMALL) return minus(signless(x.toFixed(decimals)));
-  const short = (/** @type {number} */ up) => (x / 10 ** up).toFixed(Math.min(digits - 1, Math.max(known + up, 0)));
+  const short = (/** @type {number} */ up) => (x / 10 ** up).toFixed(Math.min(digits - 1, Math.max(last + up, 0)));
   // 9.999 is told as 10.0
   const up = Math.abs(Number(short(power))) < 10 ? power : power + 1;
   return minus(`${short(up)} × 10${raised(up)}`);
@@ -36,7 +40,7 @@ export function numeral(x, within = 0, digits = 3) {
  * @param {number} within the last digit that is known: a power of ten
  */
 export function fixed(x, within) {
-  return within < 5e-7 ? numeral(x, within, 4) : minus(signless(x.toFixed(Math.max(0, -Math.round(Math.log10(within))))));
+  return within < 5e-7 ? numeral(x, within, 4) : minus(signless(known(x, within).toFixed(Math.max(0, -Math.round(Math.log10(within))))));
 }
 
 /**

@@ -441,9 +441,13 @@ class World(_obscura.World):
 
     def __setattr__(self, name: str, value: Any) -> None:
         if not isinstance(getattr(type(self), name, None), property):
-            near = difflib.get_close_matches(name, [each for each in dir(World) if not each.startswith("_")], 1)
-            # a class of one's own may have attributes of its own
-            if type(self) is World or near:
+            # a class of one's own may have attributes of its own, but for what looks like one that can be set
+            own = type(self) is not World
+            known = [each for each in dir(World) if not each.startswith("_")]
+            if own:
+                known = [each for each in known if getattr(getattr(World, each), "fset", None)]
+            near = difflib.get_close_matches(name, known, 1)
+            if near or not own:
                 raise AttributeError(f"a world has no '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))
         super().__setattr__(name, value)
 
